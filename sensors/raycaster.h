@@ -1,0 +1,61 @@
+// Rays against the world's triangles (Embree, one ISA so that results agree to the bit on every machine).
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "worlds/world.h"
+
+namespace vsslam {
+
+/// 16 rays in structure-of-arrays form, in world coordinates. Directions are unit vectors. A ray with
+/// far < near is off.
+struct alignas(64) RayPacket {
+  float origin_x[16], origin_y[16], origin_z[16];
+  float direction_x[16], direction_y[16], direction_z[16];
+  float near_m[16], far_m[16];
+};
+
+/// Answers of a packet; object == kNoHit where nothing was hit.
+struct alignas(64) HitPacket {
+  static constexpr uint32_t kNoHit = 0xFFFFFFFFu;
+  float range_m[16];
+  uint32_t object[16];     ///< index into World::objects
+  uint32_t triangle[16];   ///< index within the object, primitives one after another
+  float u[16], v[16];      ///< barycentric coordinates of the second and third vertex
+  float normal_x[16], normal_y[16], normal_z[16];  ///< geometric, not normalised, either side
+};
+
+class Raycaster {
+ public:
+  explicit Raycaster(const World& world);
+  ~Raycaster();
+  Raycaster(const Raycaster&) = delete;
+  Raycaster& operator=(const Raycaster&) = delete;
+
+  /// Traces packets; coherent says that the rays of a packet lie close together. Thread-safe.
+  void trace(std::span<const RayPacket> rays, std::span<HitPacket> hits, bool coherent = true) const;
+  /// One ray; returns false if nothing is hit. Convenience for oracles.
+  struct Hit {
+    double range_m;
+    uint32_t object, triangle;
+    Vec3 normal_world;  ///< unit, towards the origin of the ray
+    int material;
+  };
+  bool trace_one(const Vec3& origin_world, const Vec3& direction_world, double max_range_m, Hit& hit) const;
+
+  /// Material of a triangle of an object.
+  int material(uint32_t object, uint32_t triangle) const;
+
+  /// Moves an object or takes it away; takes effect at commit(). Not thread-safe against trace.
+  void set_object_pose(int object, const Eigen::Affine3d& T_world_object, bool present);
+  void commit();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace vsslam

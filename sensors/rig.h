@@ -1,0 +1,63 @@
+// The sensors on the robot: mounts, rates, noise; and the stream of measurements in order of time.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+
+#include "core/calibration.h"
+#include "core/config.h"
+#include "sensors/imu.h"
+#include "sensors/lidar.h"
+#include "sensors/raycaster.h"
+#include "sensors/samples.h"
+#include "sensors/sensor_events.h"
+#include "sensors/wheel_encoder.h"
+#include "sim/simulation.h"
+
+namespace vsslam {
+
+struct MountConfig {
+  Vec3 position_m = Vec3::Zero();  ///< of the sensor's origin in the base frame
+  Vec3 rpy_deg = Vec3::Zero();
+  SE3 T_base_sensor() const;
+  void fields(Fields& f);
+};
+
+/// The `rig` section of a scenario, and the content of sensors/library/*.yaml.
+struct RigConfig {
+  struct Sensors {
+    LidarConfig lidar;
+    ImuConfig imu;
+    WheelEncoderConfig wheels;
+    void fields(Fields& f);
+  } sensors;
+  struct Mounts {
+    MountConfig lidar, imu, camera;
+    void fields(Fields& f);
+  } mounts;
+
+  void fields(Fields& f);  ///< starts with f.base("rigs", *this)
+  /// What the estimator is told.
+  RigCalibration calibration(double wheel_radius_m, double effective_track_m, double base_height_m) const;
+};
+
+/// Samples all sensors from the truth trajectory.
+class Rig {
+ public:
+  Rig(const World& world, const RigConfig& config, const SensorEvents& events, uint64_t seed);
+  ~Rig();
+
+  /// Emits every measurement whose acquisition ends at or before `until`, in order of the end of its
+  /// acquisition (ties: IMU, wheels, LiDAR). simulation.trajectory() must reach `until`.
+  void advance(Time until, const Simulation& simulation, const std::function<void(Measurement&&)>& sink);
+  /// Earliest time of the truth that is still needed.
+  Time needed_from() const;
+  Raycaster& raycaster();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace vsslam

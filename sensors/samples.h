@@ -1,0 +1,43 @@
+// What the simulated sensors deliver: the sample that the estimator may see, and its truth beside it.
+#pragma once
+
+#include <cstdint>
+#include <variant>
+#include <vector>
+
+#include "core/samples.h"
+#include "worlds/world.h"
+
+namespace vsslam {
+
+/// Truth of one LiDAR point.
+struct PointTruth {
+  Vec3f position_lidar = Vec3f::Zero();  ///< noise-free point, undistorted: in the LiDAR frame at the scan's stamp
+  Vec3f normal_lidar = Vec3f::Zero();    ///< unit surface normal towards the sensor, in the same frame
+  float range_m = 0;                     ///< noise-free, along the beam's centre from its own origin
+  float cos_incidence = 0;
+  uint32_t object = 0;                   ///< index into World::objects
+  uint32_t triangle = 0;                 ///< index within the object, primitives one after another
+  uint16_t material = 0;
+};
+
+struct LidarMeasurement {
+  LidarScan scan;
+  SE3 T_world_lidar;               ///< truth at scan.stamp
+  std::vector<PointTruth> truth;   ///< one per scan.points, same order
+};
+
+struct ImuMeasurement {
+  ImuSample sample;
+  Vec3 true_gyro_radps = Vec3::Zero(), true_accel_mps2 = Vec3::Zero();  ///< noise-free
+  Vec3 gyro_bias_radps = Vec3::Zero(), accel_bias_mps2 = Vec3::Zero();
+};
+
+struct WheelMeasurement {
+  WheelSample sample;
+  double slip_left_mps = 0, slip_right_mps = 0;
+};
+
+using Measurement = std::variant<ImuMeasurement, WheelMeasurement, LidarMeasurement>;
+
+}  // namespace vsslam

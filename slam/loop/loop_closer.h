@@ -1,0 +1,60 @@
+// Loop closing of the methods that are compared: candidates, verification, accepted edges. Every candidate
+// leaves a record, accepted or not.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/calibration.h"
+#include "core/config.h"
+#include "core/stage_clock.h"
+#include "slam/graph/pose_graph.h"
+#include "slam/key_scan.h"
+#include "slam/loop/loop_config.h"
+
+namespace vsslam {
+
+/// One candidate. Poses relate base frames: T_match_query maps query-base coordinates to match-base.
+struct LoopRecord {
+  int query = -1, match = -1;          ///< key scan ids
+  Time query_stamp, match_stamp;
+  double descriptor_distance = -1;     ///< -1: the method uses none
+  double runner_up_distance = -1;      ///< best distance to any other stored scan, -1: none
+  int virtual_id = 0;                  ///< 0: the scan itself, 1..8N: virtual positions
+  Eigen::Vector2d virtual_offset_m = Eigen::Vector2d::Zero();
+  double yaw_rad = 0;                  ///< of the winning shift
+  bool icp_run = false, icp_converged = false;
+  int icp_iterations = 0;
+  double fitness_m2 = -1;              ///< mean squared distance of ICP's inliers
+  double inlier_ratio = 0, overlap = 0;
+  SE3 T_match_query;                   ///< ICP's result, or the guess if ICP did not run
+  SE3 T_match_query_predicted;         ///< from the poses before this loop
+  bool accepted = false;
+  std::string why;                     ///< "accepted", "fitness", "not_converged", "overlap", "distance", ...
+};
+
+/// What the descriptor database holds.
+struct StoredDescriptor {
+  int key = -1;        ///< key scan id
+  size_t bytes = 0;    ///< descriptor and keys actually held
+};
+
+class LoopCloser {
+ public:
+  LoopCloser(const LoopConfig& config, Method method, const LidarCalibration& lidar, StageClock* clock);
+  ~LoopCloser();
+
+  /// Looks at the newest key scan (keys.back()); returns the records of its candidates, in order. `now` is the
+  /// stamp of the scan; methods that look periodically keep their own last time. Called once per key scan.
+  std::vector<LoopRecord> add(const std::vector<KeyScan>& keys, Time now);
+
+  std::vector<StoredDescriptor> stored() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace vsslam
