@@ -1,0 +1,93 @@
+// Truth of loops: which accepted edges are true, which places are seen again, which were missed.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/se3.h"
+#include "sensors/raycaster.h"
+#include "sensors/samples.h"
+#include "slam/lidar/cloud.h"
+#include "slam/loop/loop_closer.h"
+
+namespace vsslam {
+
+/// What is kept of a key scan to judge loops.
+struct KeyScanTruth {
+  int key = 0;  ///< id of the key scan; its index in the list
+  Time stamp;
+  SE3 T_world_base, T_world_lidar;
+  Cloud points_lidar;  ///< noise-free, undistorted, at most a few hundred
+};
+
+struct LoopTruthOptions {
+  size_t max_points = 480;     ///< of a scan, for overlap: evenly spread over the firing order
+  double seen_within_m = 0.2;  ///< a point is seen if the ray to it ends no further than this before it
+  double max_range_m = 100.0;  ///< points further away are not seen
+  double true_within_m = 0.5, true_within_deg = 5.0;  ///< of an accepted edge's relative pose
+  double revisit_within_m = 4.0, revisit_overlap = 0.3;
+  Duration revisit_after{30'000'000'000};
+};
+
+/// Keeps `max_points` of the noise-free points, the same choice each time.
+KeyScanTruth key_scan_truth(int key, const LidarMeasurement& measurement, const SE3& T_world_base,
+                            size_t max_points);
+
+enum class LoopVerdict { accepted_true, accepted_false, rejected };
+std::string_view verdict_name(LoopVerdict verdict);  ///< "true", "false", "rejected"
+
+/// Truth of one LoopRecord.
+struct LoopJudgement {
+  double error_m = 0, error_deg = 0;  ///< of T_match_query against the truth
+  double overlap = 0;                 ///< true share of the query's points that the match's pose sees
+  LoopVerdict verdict = LoopVerdict::rejected;
+};
+
+/// A key scan at a place where the robot was before.
+struct Revisit {
+  int key = -1;
+  int of = -1;  ///< nearest older key scan that qualifies
+  double overlap = 0;
+  bool closed = false;  ///< a true edge was accepted within revisit_within_m
+};
+
+struct LoopScore {
+  int candidates = 0, accepted = 0, true_loops = 0, false_loops = 0;
+  std::vector<LoopJudgement> judgements;  ///< one per record, same order
+  std::vector<Revisit> revisits;          ///< in order of key
+  /// closed / revisits; absent without revisits.
+  std::optional<double> recall() const;
+  /// true / accepted; absent without accepted edges.
+  std::optional<double> precision() const;
+};
+
+/// Ray casts happen in the raycaster's present state (objects as the last commit left them). Glass does not
+/// hide.
+class LoopOracle {
+ public:
+  /// keys[i].key == i. Both references must outlive the oracle.
+  LoopOracle(const World& world, const Raycaster& raycaster, std::vector<KeyScanTruth> keys,
+             const LoopTruthOptions& options = {});
+
+  /// Share of the points of `query` that are seen from the pose of `match`, 0..1.
+  double overlap(int query, int match) const;
+  const std::vector<Revisit>& revisits() const { return revisits_; }  ///< `closed` still open
+  const std::vector<KeyScanTruth>& keys() const { return keys_; }
+
+  LoopScore score(std::span<const LoopRecord> records) const;
+
+ private:
+  bool sees(const Vec3& from_world, const Vec3& point_world) const;
+  std::optional<Revisit> revisit(int key) const;
+  LoopJudgement judge(const LoopRecord& record) const;
+
+  const Raycaster& raycaster_;
+  std::vector<KeyScanTruth> keys_;
+  LoopTruthOptions options_;
+  std::vector<bool> glass_;  // by material
+  std::vector<Revisit> revisits_;
+};
+
+}  // namespace vsslam
