@@ -13,7 +13,8 @@
 #include "sensors/samples.h"
 #include "sensors/sensor_events.h"
 #include "sensors/wheel_encoder.h"
-#include "sim/simulation.h"
+#include "sim/trajectory.h"
+#include "sim/wheel_state.h"
 
 namespace vsslam {
 
@@ -49,8 +50,10 @@ class Rig {
   ~Rig();
 
   /// Emits every measurement whose acquisition ends at or before `until`, in order of the end of its
-  /// acquisition (ties: IMU, wheels, LiDAR). simulation.trajectory() must reach `until`.
-  void advance(Time until, const Simulation& simulation, const std::function<void(Measurement&&)>& sink);
+  /// acquisition (ties: IMU, wheels, LiDAR), as far as the trajectory reaches; the rest follows with the next
+  /// call. Measuring starts at trajectory.begin() of the first call, but not before time 0.
+  void advance(Time until, const Trajectory& trajectory, const std::function<WheelState(Time)>& wheels,
+               const std::function<void(Measurement&&)>& sink);
   /// Earliest time of the truth that is still needed.
   Time needed_from() const;
   Raycaster& raycaster();

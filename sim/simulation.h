@@ -12,16 +12,10 @@
 #include "sim/drive_script.h"
 #include "sim/scout.h"
 #include "sim/trajectory.h"
+#include "sim/wheel_state.h"
 #include "worlds/world.h"
 
 namespace vsslam {
-
-/// True rotation of the wheels, sampled with the dynamics and interpolated.
-struct WheelState {
-  double left_rad = 0, right_rad = 0;            ///< mean of front and rear
-  double left_radps = 0, right_radps = 0;
-  double slip_left_mps = 0, slip_right_mps = 0;  ///< wheel surface speed minus ground speed along the wheel
-};
 
 enum class DriveOutcome { driving, finished, stuck, collided };
 
