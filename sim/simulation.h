@@ -54,6 +54,10 @@ class Simulation {
   };
   Deviation spline_deviation() const;
 
+  /// Wheel slip: between the two times the floor's friction under the left and right wheels is scaled.
+  /// Overlapping intervals multiply. Call before the interval begins.
+  void scale_friction(Time from, Time to, double left_scale, double right_scale);
+
   /// Objects that move or appear: current placement of an object of the world, see events.
   void set_object_pose(int object, const Eigen::Affine3d& T_world_object, bool present);
 
