@@ -1,9 +1,9 @@
 // Truth of loops: which accepted edges are true, which places are seen again, which were missed.
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "core/se3.h"
@@ -82,6 +82,8 @@ class LoopOracle {
   bool sees(const Vec3& from_world, const Vec3& point_world) const;
   std::optional<Revisit> revisit(int key) const;
   LoopJudgement judge(const LoopRecord& record) const;
+  /// A true edge from `query` closes the revisits near it.
+  void close_near(int query, std::vector<Revisit>& revisits) const;
 
   const Raycaster& raycaster_;
   std::vector<KeyScanTruth> keys_;
