@@ -32,7 +32,7 @@ struct Material {
   // For the camera (linear RGB).
   Vec3f base_color = Vec3f::Constant(0.8f);
   int base_color_texture = -1;  ///< index into World::textures, -1: none
-  TextureTransform base_color_transform;
+  TextureTransform base_color_transform{};
   Vec3f emissive = Vec3f::Zero();
   float roughness = 0.9f;
   float metallic = 0.0f;
@@ -85,8 +85,8 @@ struct Light {
 /// triangles shakes the IMU; the visual floor mesh (collision none) follows it.
 struct Floor {
   double height_m = 0;
-  double unevenness_m = 0;     ///< RMS height of the waves; 0: a plane
-  double wavelength_m = 2.0;   ///< of the shortest wave
+  double unevenness_m = 0;    ///< RMS height of the waves; 0: a plane
+  double wavelength_m = 2.0;  ///< of the shortest wave
   uint64_t seed = 1;
 
   double height(double x_m, double y_m) const;
