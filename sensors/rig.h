@@ -8,7 +8,8 @@
 #include "core/calibration.h"
 #include "core/config.h"
 #include "sensors/imu.h"
-#include "sensors/lidar.h"
+#include "sensors/lidar_config.h"
+#include "sensors/moving_objects.h"
 #include "sensors/raycaster.h"
 #include "sensors/samples.h"
 #include "sensors/sensor_events.h"
@@ -34,7 +35,10 @@ struct RigConfig {
     void fields(Fields& f);
   } sensors;
   struct Mounts {
-    MountConfig lidar, imu, camera;
+    // On a Scout 2.0: LiDAR on a post, camera in front of it, IMU in the middle of the deck.
+    MountConfig lidar{{0.10, 0, 0.45}, Vec3::Zero()};
+    MountConfig imu{{0, 0, 0.12}, Vec3::Zero()};
+    MountConfig camera{{0.32, 0, 0.30}, {-90, 0, -90}};
     void fields(Fields& f);
   } mounts;
 
@@ -46,17 +50,21 @@ struct RigConfig {
 /// Samples all sensors from the truth trajectory.
 class Rig {
  public:
+  /// The world must outlive the rig. Throws InputError if an event names an object that the world has not.
   Rig(const World& world, const RigConfig& config, const SensorEvents& events, uint64_t seed);
   ~Rig();
 
   /// Emits every measurement whose acquisition ends at or before `until`, in order of the end of its
   /// acquisition (ties: IMU, wheels, LiDAR), as far as the trajectory reaches; the rest follows with the next
-  /// call. Measuring starts at trajectory.begin() of the first call, but not before time 0.
+  /// call. Measuring starts at trajectory.begin() of the first call, but not before time 0. Objects with
+  /// events are where they are at the beginning of each LiDAR scan.
   void advance(Time until, const Trajectory& trajectory, const std::function<WheelState(Time)>& wheels,
                const std::function<void(Measurement&&)>& sink);
   /// Earliest time of the truth that is still needed.
   Time needed_from() const;
   Raycaster& raycaster();
+  /// For those who must move the same objects, as the simulation's collisions do.
+  const MovingObjects& moving_objects() const;
 
  private:
   struct Impl;

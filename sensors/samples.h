@@ -12,29 +12,33 @@ namespace vsslam {
 
 /// Truth of one LiDAR point.
 struct PointTruth {
-  Vec3f position_lidar = Vec3f::Zero();  ///< noise-free point, undistorted: in the LiDAR frame at the scan's stamp
-  Vec3f normal_lidar = Vec3f::Zero();    ///< unit surface normal towards the sensor, in the same frame
-  float range_m = 0;                     ///< noise-free, along the beam's centre from its own origin
+  Vec3f position_lidar =
+      Vec3f::Zero();  ///< noise-free point, undistorted: in the LiDAR frame at the scan's true stamp
+  Vec3f normal_lidar = Vec3f::Zero();  ///< unit surface normal towards the sensor, in the same frame
+  float range_m = 0;                   ///< noise-free, along the beam's centre from where it crosses the axis
   float cos_incidence = 0;
-  uint32_t object = 0;                   ///< index into World::objects
-  uint32_t triangle = 0;                 ///< index within the object, primitives one after another
+  uint32_t object = 0;    ///< index into World::objects
+  uint32_t triangle = 0;  ///< index within the object, primitives one after another
   uint16_t material = 0;
 };
 
 struct LidarMeasurement {
   LidarScan scan;
-  SE3 T_world_lidar;               ///< truth at scan.stamp
-  std::vector<PointTruth> truth;   ///< one per scan.points, same order
+  Time true_stamp;                ///< differs from scan.stamp where the sensor's clock is wrong
+  SE3 T_world_lidar;              ///< truth at true_stamp
+  std::vector<PointTruth> truth;  ///< one per scan.points, same order
 };
 
 struct ImuMeasurement {
   ImuSample sample;
+  Time true_stamp;
   Vec3 true_gyro_radps = Vec3::Zero(), true_accel_mps2 = Vec3::Zero();  ///< noise-free
   Vec3 gyro_bias_radps = Vec3::Zero(), accel_bias_mps2 = Vec3::Zero();
 };
 
 struct WheelMeasurement {
   WheelSample sample;
+  Time true_stamp;
   double slip_left_mps = 0, slip_right_mps = 0;
 };
 

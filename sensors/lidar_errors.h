@@ -1,0 +1,41 @@
+// From an echo to what the device reports: bias, noise, lost echoes, quantisation, reflectivity byte.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "core/rng.h"
+#include "sensors/lidar_echo.h"
+
+namespace vsslam {
+
+struct ReportedPacket {
+  int any[kLanes];
+  float range_m[kLanes];
+  float intensity[kLanes];
+};
+
+/// Extra range at grazing incidence, m: the slanted footprint lengthens the echo (Laconte et al., ICRA 2019,
+/// measured on an HDL-32E at 10 m; taken as proportional to range, constant beyond 85 deg).
+double incidence_bias_m(double cos_incidence, double range_m);
+
+class LidarErrors {
+ public:
+  LidarErrors(const LidarConfig& config, size_t lasers, uint64_t seed);
+  /// `first_cycle`: of the packet's lane 0, counted from time 0.
+  void report(const EchoPacket& echo, size_t laser, int64_t first_cycle, ReportedPacket& out) const;
+  double laser_bias_m(size_t laser) const { return laser_bias_m_[laser]; }
+
+ private:
+  bool detected(float power, float range_m, uint64_t cycle, size_t laser) const;
+
+  LidarConfig config_;
+  RandomStream range_noise_, detection_noise_, intensity_noise_;
+  const NormalTable& normal_;
+  std::vector<float> laser_bias_m_;
+  static constexpr int kBiasCells = 512;
+  std::array<float, kBiasCells + 1> bias_per_m_;  ///< incidence bias per metre of range, by cos(incidence)
+  float detection_gain_;
+};
+
+}  // namespace vsslam

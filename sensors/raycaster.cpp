@@ -1,0 +1,274 @@
+#include "sensors/raycaster.h"
+
+#include <embree3/rtcore.h>
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstring>
+#include <stdexcept>
+
+#include "core/errors.h"
+
+namespace vsslam {
+
+namespace {
+
+/// n . x = offset in the world, n a unit vector; n = 0 for a degenerate triangle.
+struct Plane {
+  double nx, ny, nz, offset;
+};
+
+struct TracedObject {
+  RTCGeometry geometry = nullptr;
+  std::vector<Plane> planes;   ///< by triangle
+  std::vector<int> materials;  ///< by triangle
+  bool moves = false;          ///< lives in the scene of moving objects
+};
+
+void check(RTCDevice device, const char* what) {
+  const RTCError error = rtcGetDeviceError(device);
+  if (error == RTC_ERROR_NONE) return;
+  if (error == RTC_ERROR_OUT_OF_MEMORY) throw ResourceError(fmt::format("{}: out of memory", what));
+  throw std::runtime_error(fmt::format("{}: Embree error {}", what, static_cast<int>(error)));
+}
+
+Plane plane_of(const Vec3f& a, const Vec3f& b, const Vec3f& c) {
+  const Vec3 origin = a.cast<double>();
+  const Vec3 normal = (b.cast<double>() - origin).cross(c.cast<double>() - origin);
+  const double length = normal.norm();
+  if (!(length > 0)) return {0, 0, 0, 0};
+  const Vec3 n = normal / length;
+  return {n.x(), n.y(), n.z(), n.dot(origin)};
+}
+
+// Vertices in the world, all primitives of the object one after another.
+void place(const Mesh& mesh, const Eigen::Affine3d& T_world_object, TracedObject& object) {
+  auto* vertex = static_cast<float*>(rtcGetGeometryBufferData(object.geometry, RTC_BUFFER_TYPE_VERTEX, 0));
+  size_t triangle = 0;
+  std::vector<Vec3f> positions_world;
+  for (const Primitive& primitive : mesh.primitives) {
+    positions_world.clear();
+    for (const Vec3f& p : primitive.positions) {
+      positions_world.push_back((T_world_object * p.cast<double>()).cast<float>());
+      std::memcpy(vertex, positions_world.back().data(), 3 * sizeof(float));
+      vertex += 3;
+    }
+    for (const auto& t : primitive.triangles)
+      object.planes[triangle++] =
+          plane_of(positions_world[t[0]], positions_world[t[1]], positions_world[t[2]]);
+  }
+}
+
+TracedObject make_object(RTCDevice device, const Mesh& mesh, const Eigen::Affine3d& T_world_object) {
+  TracedObject object;
+  size_t vertices = 0, triangles = 0;
+  for (const Primitive& primitive : mesh.primitives) {
+    vertices += primitive.positions.size();
+    triangles += primitive.triangles.size();
+    object.materials.resize(triangles, primitive.material);
+  }
+  object.planes.resize(triangles);
+  object.geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  if (triangles == 0) return object;
+  rtcSetNewGeometryBuffer(object.geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float),
+                          vertices);
+  auto* index = static_cast<uint32_t*>(rtcSetNewGeometryBuffer(
+      object.geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(uint32_t), triangles));
+  check(device, "placing a mesh");
+  uint32_t first_vertex = 0;
+  for (const Primitive& primitive : mesh.primitives) {
+    for (const auto& t : primitive.triangles)
+      for (uint32_t corner : t) *index++ = first_vertex + corner;
+    first_vertex += static_cast<uint32_t>(primitive.positions.size());
+  }
+  place(mesh, T_world_object, object);
+  return object;
+}
+
+RTCScene new_scene(RTCDevice device) {
+  RTCScene scene = rtcNewScene(device);
+  rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);  // without it rays leak between triangles
+  rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_MEDIUM);
+  return scene;
+}
+
+template <size_t N>
+void copy(const float (&from)[N], float (&to)[N]) {
+  std::memcpy(to, from, sizeof(from));
+}
+
+void load(const RayPacket& rays, RTCRayHit16& packet, int (&valid)[16]) {
+  copy(rays.origin_x, packet.ray.org_x);
+  copy(rays.origin_y, packet.ray.org_y);
+  copy(rays.origin_z, packet.ray.org_z);
+  copy(rays.direction_x, packet.ray.dir_x);
+  copy(rays.direction_y, packet.ray.dir_y);
+  copy(rays.direction_z, packet.ray.dir_z);
+  copy(rays.near_m, packet.ray.tnear);
+  copy(rays.far_m, packet.ray.tfar);
+  for (int i = 0; i < 16; ++i) {
+    packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+    valid[i] = rays.near_m[i] <= rays.far_m[i] ? -1 : 0;
+  }
+}
+
+}  // namespace
+
+struct Raycaster::Impl {
+  explicit Impl(const World& w) : world(w) {
+    device = rtcNewDevice("isa=avx2,threads=1,set_affinity=0");
+    if (!device) throw std::runtime_error("Embree needs a CPU with AVX2");
+    still = new_scene(device);
+    moving = new_scene(device);
+  }
+  ~Impl() {
+    for (TracedObject& object : objects) rtcReleaseGeometry(object.geometry);
+    rtcReleaseScene(moving);
+    rtcReleaseScene(still);
+    rtcReleaseDevice(device);
+  }
+
+  const World& world;
+  RTCDevice device = nullptr;
+  RTCScene still = nullptr, moving = nullptr;  ///< moving: objects whose pose was changed at least once
+  int moving_objects = 0;                      ///< attached to `moving`
+  bool still_dirty = false, moving_dirty = false;
+  std::vector<TracedObject> objects;
+
+  void intersect(RTCRayHit16& packet, const int (&valid)[16], bool coherent) const {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+    rtcIntersect16(valid, still, &context, &packet);
+    if (moving_objects > 0) rtcIntersect16(valid, moving, &context, &packet);
+  }
+
+  /// Range and normal from the plane of the triangle that was hit.
+  void refine(const RayPacket& rays, HitPacket& hits) const {
+    alignas(64) double nx[16], ny[16], nz[16], offset[16];
+    for (int i = 0; i < 16; ++i) {
+      Plane plane{0, 0, 0, 0};
+      hits.material[i] = 0;
+      if (hits.object[i] != HitPacket::kNoHit) {
+        const TracedObject& object = objects[hits.object[i]];
+        plane = object.planes[hits.triangle[i]];
+        hits.material[i] = object.materials[hits.triangle[i]];
+      }
+      nx[i] = plane.nx, ny[i] = plane.ny, nz[i] = plane.nz, offset[i] = plane.offset;
+    }
+    for (int i = 0; i < 16; ++i) {
+      const double along =
+          nx[i] * rays.direction_x[i] + ny[i] * rays.direction_y[i] + nz[i] * rays.direction_z[i];
+      const double height = nx[i] * rays.origin_x[i] + ny[i] * rays.origin_y[i] + nz[i] * rays.origin_z[i];
+      const float range = static_cast<float>((offset[i] - height) / along);
+      // A ray within the plane has no better answer than Embree's.
+      const bool better = std::abs(range - hits.range_m[i]) < 1e-3f * (1.0f + hits.range_m[i]);
+      hits.range_m[i] = better ? range : hits.range_m[i];
+      const double side = along > 0 ? -1.0 : 1.0;
+      hits.normal_x[i] = static_cast<float>(side * nx[i]);
+      hits.normal_y[i] = static_cast<float>(side * ny[i]);
+      hits.normal_z[i] = static_cast<float>(side * nz[i]);
+    }
+  }
+};
+
+Raycaster::Raycaster(const World& world) : impl_(std::make_unique<Impl>(world)) {
+  Impl& impl = *impl_;
+  for (size_t i = 0; i < world.objects.size(); ++i) {
+    const Object& object = world.objects[i];
+    impl.objects.push_back(
+        make_object(impl.device, world.meshes.at(static_cast<size_t>(object.mesh)), object.T_world_object));
+    TracedObject& traced = impl.objects.back();
+    if (traced.planes.empty()) continue;
+    rtcCommitGeometry(traced.geometry);
+    rtcAttachGeometryByID(impl.still, traced.geometry, static_cast<unsigned>(i));
+  }
+  rtcCommitScene(impl.still);
+  rtcCommitScene(impl.moving);
+  check(impl.device, "building the acceleration structure");
+}
+
+Raycaster::~Raycaster() = default;
+
+const World& Raycaster::world() const {
+  return impl_->world;
+}
+
+void Raycaster::trace(std::span<const RayPacket> rays, std::span<HitPacket> hits, bool coherent) const {
+  alignas(64) RTCRayHit16 packet;
+  alignas(64) int valid[16];
+  std::memset(&packet, 0, sizeof(packet));
+  for (unsigned& mask : packet.ray.mask) mask = ~0u;
+  for (size_t i = 0; i < rays.size(); ++i) {
+    load(rays[i], packet, valid);
+    impl_->intersect(packet, valid, coherent);
+    HitPacket& hit = hits[i];
+    copy(packet.ray.tfar, hit.range_m);
+    copy(packet.hit.u, hit.u);
+    copy(packet.hit.v, hit.v);
+    std::memcpy(hit.object, packet.hit.geomID, sizeof(hit.object));
+    std::memcpy(hit.triangle, packet.hit.primID, sizeof(hit.triangle));
+    impl_->refine(rays[i], hit);
+  }
+}
+
+bool Raycaster::trace_one(const Vec3& origin_world, const Vec3& direction_world, double max_range_m,
+                          Hit& hit) const {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  alignas(16) RTCRayHit ray = {};
+  const Vec3f origin = origin_world.cast<float>(), direction = direction_world.cast<float>();
+  ray.ray.org_x = origin.x(), ray.ray.org_y = origin.y(), ray.ray.org_z = origin.z();
+  ray.ray.dir_x = direction.x(), ray.ray.dir_y = direction.y(), ray.ray.dir_z = direction.z();
+  ray.ray.tfar = static_cast<float>(max_range_m);
+  ray.ray.mask = ~0u;
+  ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect1(impl_->still, &context, &ray);
+  if (impl_->moving_objects > 0) rtcIntersect1(impl_->moving, &context, &ray);
+  if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
+
+  const Plane& plane = impl_->objects[ray.hit.geomID].planes[ray.hit.primID];
+  const Vec3 normal(plane.nx, plane.ny, plane.nz);
+  const double along = normal.dot(direction_world);
+  const double range = (plane.offset - normal.dot(origin_world)) / along;
+  const bool better = std::abs(range - ray.ray.tfar) < 1e-3 * (1.0 + ray.ray.tfar);
+  hit.range_m = better ? range : ray.ray.tfar;
+  hit.object = ray.hit.geomID;
+  hit.triangle = ray.hit.primID;
+  hit.normal_world = along > 0 ? Vec3(-normal) : normal;
+  hit.material = material(hit.object, hit.triangle);
+  return true;
+}
+
+int Raycaster::material(uint32_t object, uint32_t triangle) const {
+  return impl_->objects[object].materials[triangle];
+}
+
+void Raycaster::set_object_pose(int object, const Eigen::Affine3d& T_world_object, bool present) {
+  Impl& impl = *impl_;
+  const auto id = static_cast<unsigned>(object);
+  TracedObject& traced = impl.objects.at(id);
+  if (traced.planes.empty()) return;
+  if (!traced.moves) {
+    rtcDetachGeometry(impl.still, id);
+    rtcAttachGeometryByID(impl.moving, traced.geometry, id);
+    impl.still_dirty = true;
+    traced.moves = true;
+    ++impl.moving_objects;
+  }
+  place(impl.world.meshes[static_cast<size_t>(impl.world.objects[id].mesh)], T_world_object, traced);
+  rtcUpdateGeometryBuffer(traced.geometry, RTC_BUFFER_TYPE_VERTEX, 0);
+  if (present) rtcEnableGeometry(traced.geometry);
+  if (!present) rtcDisableGeometry(traced.geometry);
+  rtcCommitGeometry(traced.geometry);
+  impl.moving_dirty = true;
+}
+
+void Raycaster::commit() {
+  if (impl_->still_dirty) rtcCommitScene(impl_->still);
+  if (impl_->moving_dirty) rtcCommitScene(impl_->moving);
+  impl_->still_dirty = impl_->moving_dirty = false;
+  check(impl_->device, "moving an object");
+}
+
+}  // namespace vsslam

@@ -1,0 +1,138 @@
+#include "sensors/rig.h"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "sensors/faults.h"
+#include "sensors/lidar.h"
+
+namespace vsslam {
+
+struct Rig::Impl {
+  Impl(const World& world, const RigConfig& c, const SensorEvents& e, uint64_t seed)
+      : config(c),
+        events(e),
+        T_base_lidar(c.mounts.lidar.T_base_sensor()),
+        raycaster(world),
+        moving(world, e.objects),
+        lidar(c.sensors.lidar, e, seed, raycaster),
+        imu(c.sensors.imu, c.mounts.imu.T_base_sensor(), seed),
+        wheels(c.sensors.wheels),
+        clocks(e.clocks, seed),
+        spikes(seed, "events.imu_spikes") {}
+
+  RigConfig config;
+  SensorEvents events;
+  SE3 T_base_lidar;
+  Raycaster raycaster;
+  MovingObjects moving;
+  Lidar lidar;
+  Imu imu;
+  WheelEncoder wheels;
+  ClockErrors clocks;
+  RandomStream spikes;
+
+  bool started = false;
+  int64_t next_imu = 0, next_wheels = 0;
+  Revolution next_revolution;
+  std::vector<ObjectState> placed;  ///< of moving.objects(), as the raycaster has them
+
+  void start(Time begin) {
+    const Time first{std::max<int64_t>(0, begin.ns)};
+    next_imu = imu.first_index(first);
+    next_wheels = wheels.first_index(first);
+    next_revolution = lidar.power_on(first);
+    started = true;
+  }
+  void place_objects(Time stamp);
+  std::optional<ImuMeasurement> measure_imu(const Trajectory& trajectory);
+  std::optional<WheelMeasurement> measure_wheels(const std::function<WheelState(Time)>& state);
+  std::optional<LidarMeasurement> measure_lidar(const Trajectory& trajectory);
+};
+
+Rig::Rig(const World& world, const RigConfig& config, const SensorEvents& events, uint64_t seed)
+    : impl_(std::make_unique<Impl>(world, config, events, seed)) {}
+Rig::~Rig() = default;
+
+Raycaster& Rig::raycaster() {
+  return impl_->raycaster;
+}
+const MovingObjects& Rig::moving_objects() const {
+  return impl_->moving;
+}
+
+Time Rig::needed_from() const {
+  if (!impl_->started) return Time{0};
+  return std::min({impl_->imu.stamp(impl_->next_imu), impl_->wheels.stamp(impl_->next_wheels),
+                   impl_->lidar.begin(impl_->next_revolution)});
+}
+
+void Rig::advance(Time until, const Trajectory& trajectory, const std::function<WheelState(Time)>& wheels,
+                  const std::function<void(Measurement&&)>& sink) {
+  Impl& impl = *impl_;
+  if (!impl.started && trajectory.begin() <= trajectory.end()) impl.start(trajectory.begin());
+  if (!impl.started) return;
+  until = std::min(until, trajectory.end());
+  const auto emit = [&](auto&& measured) {
+    if (measured) sink(Measurement(std::move(*measured)));
+  };
+  while (true) {
+    const Time imu = impl.imu.stamp(impl.next_imu), wheel = impl.wheels.stamp(impl.next_wheels),
+               lidar = impl.lidar.end(impl.next_revolution);
+    const Time next = std::min({imu, wheel, lidar});
+    if (next > until) return;
+    if (next == imu)
+      emit(impl.measure_imu(trajectory));
+    else if (next == wheel)
+      emit(impl.measure_wheels(wheels));
+    else
+      emit(impl.measure_lidar(trajectory));
+  }
+}
+
+std::optional<ImuMeasurement> Rig::Impl::measure_imu(const Trajectory& trajectory) {
+  const int64_t index = next_imu++;
+  ImuMeasurement m = imu.measure(index, trajectory);
+  if (any_lasts(events.imu_dropouts, m.true_stamp)) return std::nullopt;
+  add_spikes(events.imu_spikes, spikes, index, m);
+  m.sample.stamp = clocks.stamp(SensorKind::imu, m.true_stamp, 1 / config.sensors.imu.rate_hz);
+  return m;
+}
+
+std::optional<WheelMeasurement> Rig::Impl::measure_wheels(const std::function<WheelState(Time)>& state) {
+  const int64_t index = next_wheels++;
+  const Time now = wheels.stamp(index);
+  if (any_lasts(events.wheel_dropouts, now)) return std::nullopt;
+  WheelMeasurement m = wheels.measure(index, state(now));
+  m.sample.stamp = clocks.stamp(SensorKind::wheels, now, 1 / config.sensors.wheels.rate_hz);
+  return m;
+}
+
+std::optional<LidarMeasurement> Rig::Impl::measure_lidar(const Trajectory& trajectory) {
+  const Revolution revolution = std::exchange(next_revolution, lidar.after(next_revolution));
+  const Time begin = lidar.begin(revolution), end = lidar.end(revolution);
+  for (const SensorDropout& dropout : events.lidar_dropouts)
+    if (dropout.contains(begin) && dropout.contains(end)) return std::nullopt;
+  place_objects(begin);
+  LidarMeasurement m = lidar.scan(revolution, trajectory, T_base_lidar);
+  m.scan.stamp = clocks.stamp(SensorKind::lidar, begin, 1 / config.sensors.lidar.rate_hz);
+  m.scan.end = m.scan.stamp + (end - begin);
+  return m;
+}
+
+void Rig::Impl::place_objects(Time stamp) {
+  const std::vector<int>& objects = moving.objects();
+  bool changed = false;
+  for (size_t i = 0; i < objects.size(); ++i) {
+    const ObjectState state = moving.state(objects[i], stamp);
+    if (i < placed.size() && state == placed[i]) continue;
+    placed.resize(std::max(placed.size(), i + 1));
+    placed[i] = state;
+    raycaster.set_object_pose(objects[i], state.T_world_object, state.present);
+    changed = true;
+  }
+  if (changed) raycaster.commit();
+}
+
+}  // namespace vsslam
