@@ -1,5 +1,7 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 
@@ -15,7 +17,7 @@ using testing::HasSubstr;
 using testing::Not;
 
 std::filesystem::path file(const char* name) {
-  return std::filesystem::path(testing::TempDir()) / "evaluation_files" / name;
+  return std::filesystem::path(testing::TempDir()) / fmt::format("vsslam_files_test_{}", ::getpid()) / name;
 }
 
 template <class Call>

@@ -1,0 +1,304 @@
+#include "scenarios/report/page_tables.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "core/errors.h"
+
+namespace vsslam {
+
+namespace {
+
+using nlohmann::json;
+
+enum class Better { none, low, high };
+
+struct Figure {
+  const char* pointer;  ///< JSON pointer into metrics.json
+  const char* label;
+  const char* unit;
+  int decimals;
+  Better better = Better::none;
+};
+
+struct Group {
+  const char* title;
+  std::vector<Figure> figures;
+};
+
+const std::vector<Group>& groups() {
+  static const std::vector<Group> kGroups = {
+      {"Accuracy",
+       {{"/ate_rmse_m", "ATE RMSE", "m", 3, Better::low},
+        {"/ate_max_m", "ATE maximum", "m", 3, Better::low},
+        {"/end_error_m", "End error", "m", 3, Better::low},
+        {"/rpe_10m_percent", "RPE over 10 m, translation", "%", 3, Better::low},
+        {"/rpe_10m_deg", "RPE over 10 m, rotation", "°", 3, Better::low},
+        {"/odometry_ate_rmse_m", "Odometry ATE RMSE", "m", 3, Better::low},
+        {"/vio_ate_rmse_m", "VIO ATE RMSE", "m", 3, Better::low},
+        {"/map_error_mean_m", "Map to surface, mean", "m", 3, Better::low}}},
+      {"Loops",
+       {{"/loops/candidates", "Candidates", "", 0},
+        {"/loops/accepted", "Accepted", "", 0},
+        {"/loops/true", "True", "", 0, Better::high},
+        {"/loops/false", "False", "", 0, Better::low},
+        {"/loops/revisits", "Revisits", "", 0},
+        {"/loops/recall", "Recall", "", 3, Better::high},
+        {"/loops/precision", "Precision", "", 3, Better::high}}},
+      {"Memory",
+       {{"/descriptors/count", "Stored descriptors", "", 0, Better::low},
+        {"/descriptors/index_bytes", "Index", "B", 0, Better::low},
+        {"/descriptors/descriptor_bytes", "Descriptors", "B", 0, Better::low},
+        {"/descriptors/database_bytes", "Whole database", "B", 0, Better::low}}},
+      {"Degeneracy",
+       {{"/degeneracy/precision", "Detector precision", "", 3, Better::high},
+        {"/degeneracy/recall", "Detector recall", "", 3, Better::high},
+        {"/degeneracy/direction_error_deg_median", "Direction error, median", "°", 2, Better::low}}},
+      {"Drive",
+       {{"/duration_s", "Duration", "s", 1},
+        {"/path_length_m", "Path length", "m", 1},
+        {"/scans", "Scans", "", 0},
+        {"/images", "Images", "", 0},
+        {"/restarts", "Restarts", "", 0, Better::low}}},
+  };
+  return kGroups;
+}
+
+std::optional<double> figure_of(const ResultFolder& result, const char* pointer) {
+  const json::json_pointer at(pointer);
+  if (!result.metrics->contains(at) || !result.metrics->at(at).is_number()) return std::nullopt;
+  return result.metrics->at(at).get<double>();
+}
+
+/// With thin spaces between groups of three digits.
+std::string number_html(std::optional<double> value, int decimals) {
+  if (!value) return "<span class=\"none\">–</span>";
+  std::string text = fmt::format("{:.{}f}", *value, decimals);
+  const size_t whole = std::min(text.find('.'), text.size());
+  const size_t first = text[0] == '-' ? 1 : 0;
+  for (size_t at = whole; at > first + 3; at -= 3) text.insert(at - 3, "\u2009");
+  return text;
+}
+
+std::optional<double> best_of(const std::vector<std::optional<double>>& values, Better better) {
+  std::optional<double> best;
+  if (better == Better::none || values.size() < 2) return best;
+  for (const auto& value : values)
+    if (value && (!best || (better == Better::low ? *value < *best : *value > *best))) best = value;
+  // Equal everywhere: nothing stands out.
+  if (std::all_of(values.begin(), values.end(), [&](const auto& value) { return value == best; }))
+    best.reset();
+  return best;
+}
+
+std::string figure_row(std::span<const ResultFolder> results, const Figure& figure) {
+  std::vector<std::optional<double>> values;
+  for (const ResultFolder& result : results) values.push_back(figure_of(result, figure.pointer));
+  if (std::none_of(values.begin(), values.end(), [](const auto& value) { return value.has_value(); }))
+    return {};
+  const auto best = best_of(values, figure.better);
+  std::string row = fmt::format("<tr><th scope=\"row\">{}</th>", figure.label);
+  for (const auto& value : values)
+    row += fmt::format("<td{}>{}</td>", best && value == best ? " class=\"best\"" : "",
+                       number_html(value, figure.decimals));
+  return row + fmt::format("<td class=\"unit\">{}</td></tr>\n", figure.unit);
+}
+
+std::string column_heads(std::span<const ResultFolder> results) {
+  std::string heads;
+  for (const ResultFolder& result : results)
+    heads += fmt::format("<th scope=\"col\">{}<small>{} · seed {}</small></th>", escape_html(result.method),
+                         escape_html(result.scenario), escape_html(result.seed));
+  return heads;
+}
+
+std::string json_text(const json& value) {
+  if (value.is_number_float()) return fmt::format("{:.6g}", value.get<double>());
+  if (value.is_string()) return escape_html(value.get<std::string>());
+  return escape_html(value.dump(-1, ' ', false, json::error_handler_t::replace));
+}
+
+std::string expectation_rows(const ResultFolder& result, bool with_name) {
+  const auto expectations = result.metrics->find("expectations");
+  if (expectations == result.metrics->end() || !expectations->is_object()) return {};
+  std::string rows;
+  for (const auto& [name, expectation] : expectations->items()) {
+    if (!expectation.is_object() || !expectation.contains("pass") || !expectation["pass"].is_boolean())
+      throw InputError(fmt::format("{}: expectation \"{}\": expected value, bound and pass",
+                                   (result.path / "metrics.json").string(), name));
+    const bool pass = expectation["pass"].get<bool>();
+    rows += fmt::format(
+        "<tr>{}<th scope=\"row\">{}</th><td>{}</td><td>{}</td><td><span class=\"chip "
+        "{}\">{}</span></td></tr>\n",
+        with_name ? fmt::format("<td class=\"text\">{}</td>", escape_html(result.name())) : "",
+        escape_html(name), json_text(expectation.value("value", json())),
+        json_text(expectation.value("bound", json())), pass ? "good" : "bad", pass ? "pass" : "fail");
+  }
+  return rows;
+}
+
+struct LoopColumn {
+  const char* column;
+  const char* label;
+  int decimals;  ///< -1: as it is
+};
+
+constexpr LoopColumn kShownLoopColumns[] = {
+    {"query", "Query", -1},
+    {"match", "Match", -1},
+    {"query_stamp", "Time (s)", 1},
+    {"descriptor_distance", "Distance", 3},
+    {"runner_up_distance", "Runner-up", 3},
+    {"virtual_id", "Virtual", -1},
+    {"yaw_rad", "Yaw (rad)", 2},
+    {"icp_iterations", "ICP steps", -1},
+    {"fitness_m2", "Fitness (m²)", 4},
+    {"inlier_ratio", "Inliers", 2},
+    {"overlap", "Overlap", 2},
+    {"true_overlap", "True overlap", 2},
+    {"true_error_m", "Error (m)", 3},
+    {"true_error_deg", "Error (°)", 2},
+};
+
+std::string loop_row(const CsvTable& loops, size_t row) {
+  const std::string& verdict = loops.text(row, "verdict");
+  const char* tone = verdict == "true" ? "good" : verdict == "false" ? "bad" : "quiet";
+  std::string html = fmt::format(
+      "<tr data-row=\"{}\" data-verdict=\"{}\"><td class=\"text\"><span class=\"chip {}\">{}"
+      "</span></td><td class=\"text\">{}</td>",
+      row, escape_html(verdict), tone, escape_html(verdict), escape_html(loops.text(row, "why")));
+  for (const auto& [column, label, decimals] : kShownLoopColumns)
+    html += fmt::format("<td>{}</td>", decimals < 0 ? escape_html(loops.text(row, column))
+                                                    : number_html(loops.maybe_number(row, column), decimals));
+  return html + "</tr>\n";
+}
+
+}  // namespace
+
+std::string escape_html(std::string_view text) {
+  std::string html;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        html += "&amp;";
+        break;
+      case '<':
+        html += "&lt;";
+        break;
+      case '>':
+        html += "&gt;";
+        break;
+      case '"':
+        html += "&quot;";
+        break;
+      default:
+        html += c;
+    }
+  }
+  return html;
+}
+
+std::string headline_html(const ResultFolder& result) {
+  constexpr Figure kTiles[] = {
+      {"/ate_rmse_m", "ATE RMSE", "m", 3},           {"/end_error_m", "End error", "m", 3},
+      {"/rpe_10m_percent", "RPE over 10 m", "%", 2}, {"/odometry_ate_rmse_m", "Odometry ATE", "m", 3},
+      {"/map_error_mean_m", "Map error", "m", 3},    {"/loops/recall", "Loop recall", "", 2},
+      {"/loops/precision", "Loop precision", "", 2}, {"/descriptors/count", "Descriptors", "", 0}};
+  std::string tiles;
+  for (const Figure& figure : kTiles)
+    if (const auto value = figure_of(result, figure.pointer))
+      tiles += fmt::format("<div class=\"tile\"><dt>{}</dt><dd>{}<span class=\"unit\">{}</span></dd></div>\n",
+                           figure.label, number_html(value, figure.decimals), figure.unit);
+  return tiles.empty() ? tiles : "<dl class=\"tiles\">\n" + tiles + "</dl>\n";
+}
+
+std::string metrics_html(std::span<const ResultFolder> results) {
+  std::string html;
+  for (const Group& group : groups()) {
+    std::string rows;
+    for (const Figure& figure : group.figures) rows += figure_row(results, figure);
+    if (rows.empty()) continue;
+    html +=
+        fmt::format("<div class=\"scroll\"><table class=\"figures\"><caption>{}</caption>\n", group.title);
+    if (results.size() > 1)
+      html += fmt::format("<thead><tr><td></td>{}<td></td></tr></thead>\n", column_heads(results));
+    html += "<tbody>\n" + rows + "</tbody></table></div>\n";
+  }
+  return html;
+}
+
+std::string expectations_html(std::span<const ResultFolder> results) {
+  std::string rows;
+  for (const ResultFolder& result : results) rows += expectation_rows(result, results.size() > 1);
+  if (rows.empty()) return {};
+  return fmt::format(
+      "<div class=\"scroll\"><table class=\"figures\"><caption>Expectations</caption>\n<thead><tr>{}<th "
+      "scope=\"col\">"
+      "Figure</th><th scope=\"col\">Value</th><th scope=\"col\">Bound</th><th "
+      "scope=\"col\">Result</th></tr></thead>\n"
+      "<tbody>\n{}</tbody></table></div>\n",
+      results.size() > 1 ? "<th scope=\"col\">Result of</th>" : "", rows);
+}
+
+std::string loops_html(std::span<const ResultFolder> results) {
+  std::string html, heads;
+  for (const LoopColumn& column : kShownLoopColumns)
+    heads += fmt::format("<th scope=\"col\">{}</th>", column.label);
+  for (size_t i = 0; i < results.size(); ++i) {
+    if (!results[i].loops || results[i].loops->rows() == 0) continue;
+    std::string rows;
+    for (size_t row = 0; row < results[i].loops->rows(); ++row) rows += loop_row(*results[i].loops, row);
+    html += fmt::format(
+        "<div class=\"scroll tall\" data-run=\"{}\"><table "
+        "class=\"loops\"><caption>{}</caption>\n<thead><tr><th "
+        "scope=\"col\">Verdict</th><th "
+        "scope=\"col\">Why</th>{}</tr></thead>\n<tbody>\n{}</tbody></table></div>\n",
+        i, escape_html(results[i].name()), heads, rows);
+  }
+  return html;
+}
+
+std::string timing_html(std::span<const ResultFolder> results) {
+  constexpr Figure kWhole[] = {{"/real_time_factor", "Real-time factor", "×", 1},
+                               {"/peak_rss_mib", "Peak memory", "MiB", 0},
+                               {"/cores", "Cores", "", 0}};
+  std::string html;
+  for (const ResultFolder& result : results) {
+    if (!result.timing) continue;
+    std::string summary, rows;
+    for (const Figure& figure : kWhole)
+      if (const json::json_pointer at(figure.pointer);
+          result.timing->contains(at) && result.timing->at(at).is_number())
+        summary += fmt::format(
+            "<div class=\"tile\"><dt>{}</dt><dd>{}<span class=\"unit\">{}</span></dd></div>\n", figure.label,
+            number_html(result.timing->at(at).get<double>(), figure.decimals), figure.unit);
+    const json stages = result.timing->value("stages", json::object());
+    for (const auto& [name, stage] : stages.items()) {
+      rows += fmt::format("<tr><th scope=\"row\">{}</th>", escape_html(name));
+      for (const auto& [key, decimals] :
+           {std::pair("median_ms", 3), std::pair("p99_ms", 3), std::pair("count", 0)}) {
+        const bool there = stage.is_object() && stage.contains(key) && stage[key].is_number();
+        rows += fmt::format(
+            "<td>{}</td>",
+            number_html(there ? std::optional(stage[key].get<double>()) : std::nullopt, decimals));
+      }
+      rows += "</tr>\n";
+    }
+    html += fmt::format("<h3>{}</h3>\n<dl class=\"tiles\">\n{}</dl>\n", escape_html(result.name()), summary);
+    if (!rows.empty())
+      html +=
+          "<div class=\"scroll\"><table class=\"figures\"><caption>Stages</caption>\n<thead><tr><th "
+          "scope=\"col\">"
+          "Stage</th><th scope=\"col\">Median (ms)</th><th scope=\"col\">99th percentile (ms)</th><th "
+          "scope=\"col\">"
+          "Count</th></tr></thead>\n<tbody>\n" +
+          rows + "</tbody></table></div>\n";
+  }
+  return html;
+}
+
+}  // namespace vsslam

@@ -1,0 +1,89 @@
+#include "scenarios/report/report.h"
+
+#include <fmt/format.h>
+
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/errors.h"
+#include "core/files.h"
+#include "report_page.h"
+#include "scenarios/report/page_data.h"
+#include "scenarios/report/page_tables.h"
+#include "scenarios/report/result_folder.h"
+
+namespace vsslam {
+
+namespace {
+
+/// Replaces each {{name}} of the template; a name without a value is our own bug.
+std::string fill(std::string_view text, const std::vector<std::pair<std::string_view, std::string>>& values) {
+  std::string page;
+  for (size_t open = text.find("{{"); open != text.npos; open = text.find("{{")) {
+    const size_t close = text.find("}}", open);
+    const std::string_view name = text.substr(open + 2, close - open - 2);
+    page += text.substr(0, open);
+    const auto value = std::find_if(values.begin(), values.end(),
+                                    [&](const auto& candidate) { return candidate.first == name; });
+    if (value == values.end())
+      throw std::logic_error(fmt::format("the report page has no value {{{{{}}}}}", name));
+    page += value->second;
+    text.remove_prefix(close + 2);
+  }
+  return page += text;
+}
+
+std::string section(std::string_view id, std::string_view title, std::string_view note,
+                    const std::string& content) {
+  if (content.empty()) return {};
+  return fmt::format("<section id=\"{}\">\n<h2>{}</h2>\n<p class=\"note\">{}</p>\n{}</section>\n", id, title,
+                     note, content);
+}
+
+std::string title_of(std::span<const ResultFolder> results) {
+  if (results.size() == 1) return results[0].name();
+  std::set<std::string> scenarios;
+  for (const ResultFolder& result : results) scenarios.insert(result.scenario);
+  std::string title;
+  for (const std::string& scenario : scenarios) title += (title.empty() ? "" : ", ") + scenario;
+  return fmt::format("{} · {} results", title, results.size());
+}
+
+std::string page(std::span<const ResultFolder> results) {
+  const std::string timing = timing_html(results);
+  return fill(
+      k_page_html,
+      {{"title", escape_html(title_of(results))},
+       {"style", std::string(k_page_css)},
+       {"headline", results.size() == 1 ? headline_html(results[0]) : ""},
+       {"metrics", metrics_html(results)},
+       {"metrics_kind", results.size() == 1 ? "one" : "many"},
+       {"expectations", expectations_html(results)},
+       {"loops",
+        section("loops", "Loop candidates",
+                "Every candidate, accepted or not, judged against exact truth. Point at a row to see it on "
+                "the map.",
+                loops_html(results))},
+       {"timing", section("timing", "Timing",
+                          "Wall clock; the only part of this page that differs between runs.", timing)},
+       {"data", page_data(results)},
+       {"script", std::string(k_page_chart_js) + std::string(k_page_map_js) + std::string(k_page_js)}});
+}
+
+}  // namespace
+
+void write_report(const std::filesystem::path& result_dir) {
+  const ResultFolder result = read_result_folder(result_dir);
+  write_file(result_dir / "report.html", page({&result, 1}));
+}
+
+void write_comparison(std::span<const std::filesystem::path> result_dirs, const std::filesystem::path& html) {
+  if (result_dirs.empty()) throw InputError("a report needs at least one result folder");
+  std::vector<ResultFolder> results;
+  for (const auto& dir : result_dirs) results.push_back(read_result_folder(dir));
+  write_file(html, page(results));
+}
+
+}  // namespace vsslam

@@ -1,0 +1,32 @@
+// The files of one result, read and checked.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+
+#include "scenarios/evaluation/csv.h"
+#include "scenarios/evaluation/trajectory_file.h"
+#include "slam/lidar/cloud.h"
+
+namespace vsslam {
+
+struct ResultFolder {
+  std::filesystem::path path;
+  std::string scenario, method, seed;             ///< as metrics.json says
+  std::shared_ptr<const nlohmann::json> metrics;  ///< an object
+  std::shared_ptr<const nlohmann::json> timing;   ///< an object, or null without timing.json
+  PoseTrajectory truth, estimate;                 ///< T_world_base, T_map_base
+  PoseTrajectory odometry;                        ///< T_odom_base; empty without odometry.tum
+  std::optional<CsvTable> scans, loops, descriptors;
+  std::optional<Cloud> points_map;
+
+  std::string name() const { return scenario + " · " + method + " · seed " + seed; }
+};
+
+/// Throws InputError that names the file: missing (only the needed ones), empty or broken.
+ResultFolder read_result_folder(const std::filesystem::path& path);
+
+}  // namespace vsslam
