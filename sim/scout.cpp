@@ -16,6 +16,8 @@ void ScoutConfig::fields(Fields& f) {
   f("chassis_inertia_kgm2", chassis_inertia_kgm2, between(0.01, 1000));
   f("wheel_width_m", wheel_width_m, between(0.01, 1));
   f("friction", friction, between(0.01, 2));
+  f("tyre_stiffness_npm", tyre_stiffness_npm, between(1e4, 1e6));
+  f("tyre_damping_nspm", tyre_damping_nspm, between(100, 1e5));
   f("wheel_torque_limit_nm", wheel_torque_limit_nm, between(0.1, 1000));
   f("max_speed_mps", max_speed_mps, between(0.05, 5));
   f("max_yaw_rate_radps", max_yaw_rate_radps, between(0.05, 3));

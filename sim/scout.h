@@ -5,6 +5,8 @@
 
 namespace vsslam {
 
+constexpr double kGravity_mps2 = 9.80665;
+
 /// The `robot` section of a scenario. Frame `base`: centre of the chassis, x forward, y left, z up.
 struct ScoutConfig {
   // Geometry, from the public URDF.
@@ -22,7 +24,9 @@ struct ScoutConfig {
   Vec3 chassis_inertia_kgm2{2.29, 5.10, 3.43};
   double wheel_width_m = 0.11653;
   // Contact and drive.
-  double friction = 0.7;                ///< Coulomb coefficient of each wheel on the floor
+  double friction = 0.7;  ///< Coulomb coefficient of each wheel on the floor
+  /// Of each tyre, vertically (judgement). Four stiff legs would not share the load in a defined way.
+  double tyre_stiffness_npm = 2e5, tyre_damping_nspm = 3000;
   double wheel_torque_limit_nm = 40.0;  ///< of each wheel's motor, after the gear
   double max_speed_mps = 1.5;
   double max_yaw_rate_radps = 0.785;
@@ -34,7 +38,9 @@ struct ScoutConfig {
   void fields(Fields& f);
 };
 
-/// Height of the base frame's origin above the floor.
+double total_mass_kg(const ScoutConfig& config);
+
+/// Height of the base frame's origin above a plane floor at rest, tyres compressed by the weight.
 double base_height_m(const ScoutConfig& config);
 
 /// Track of the differential drive that turns as the skid-steered robot does, as a calibration would tell:
