@@ -22,6 +22,8 @@ enum class DriveOutcome { driving, finished, stuck, collided };
 /// The `robot` and `sim` side of a run. Deterministic: same inputs, same states to the bit.
 class Simulation {
  public:
+  /// The robot stands still at time 0. Throws InputError: a script that cannot be driven in this world, a start inside
+  /// an object.
   Simulation(const World& world, const ScoutConfig& scout, const DriveScript& script);
   ~Simulation();
   Simulation(const Simulation&) = delete;
