@@ -16,7 +16,7 @@ struct PoseGraphConfig {
   double odometry_rotation_variance_rad2 = 1e-6;
   double odometry_translation_variance_m2 = 1e-4;
   int max_iterations = 100;
-  double cost_tolerance = 1e-9;  ///< stop when a step lowers the cost by less than this share of it
+  double cost_tolerance = 1e-8;  ///< stop when a step lowers the cost by less than this share of it
   void fields(Fields& f);
 
   /// Information of an odometry edge, tangent order [rotation; translation].

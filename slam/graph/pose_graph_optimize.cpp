@@ -15,7 +15,11 @@ namespace {
 ceres::Solver::Options solver_options(const PoseGraphConfig& config) {
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+  options.sparse_linear_algebra_library_type =
+      ceres::EIGEN_SPARSE;  // the others round as the host's BLAS does
   options.num_threads = 1;  // sums of several threads are not repeatable
+  options.initial_trust_region_radius =
+      1e12;  // Gauss-Newton until a step fails: damping stiffens long chains
   options.max_num_iterations = config.max_iterations;
   options.function_tolerance = config.cost_tolerance;
   options.logging_type = ceres::SILENT;

@@ -17,7 +17,74 @@ std::string_view method_name(Method method);
 Method parse_method(std::string_view name);
 const std::vector<Method>& all_methods();
 
+/// Grid of a Scan Context; rings and sectors are 20 x 60.
+struct ScanContextConfig {
+  double max_range_m = 40.0;  ///< points beyond are left out; 40 indoors, 80 outdoors
+  void fields(Fields& f);
+};
+
+/// The target of verification: key scans around the match, in their own poses, one point per voxel.
+struct LocalMapConfig {
+  int half_width_scans = 25;
+  double voxel_m = 0.2;
+  void fields(Fields& f);
+};
+
+/// Point-to-point ICP. It has converged when a step is small, when the mean squared distance stands still, or
+/// when the iterations are used up (as in PCL).
+struct IcpConfig {
+  double max_correspondence_m = 2.0;
+  int max_iterations = 100;
+  double step_translation_m = 1e-3;
+  double step_rotation_rad = 1.414e-3;
+  double relative_mse_change = 1e-6;
+  void fields(Fields& f);
+};
+
+struct VerificationConfig {
+  IcpConfig icp;
+  double max_fitness_m2 = 0.3;      ///< mean squared distance of the correspondences
+  double overlap_distance_m = 0.5;  ///< a source point overlaps if a target point is this near
+  double min_overlap = 0;           ///< share of source points; 0: not asked for
+  int min_source_points = 50, min_target_points = 500;
+  /// Clouds whose centroids are at least this far apart at the guess are first moved onto each other; 0:
+  /// never.
+  double centroid_guess_m = 0;
+  void fields(Fields& f);
+};
+
+/// `lvi-sam`: the nearest old key pose is the candidate. Edge variance = fitness, no robust kernel.
+struct LviSamLoopConfig {
+  double period_s = 2.0;
+  double search_radius_m = 20.0;
+  double min_age_s = 30.0;
+  VerificationConfig verification{.icp = {.max_correspondence_m = 40.0}, .centroid_guess_m = 20.0};
+  void fields(Fields& f);
+};
+
+/// `sc-lvi-sam`: the most similar Scan Context of all key scans is the candidate.
+struct ScLviSamLoopConfig {
+  /// as_published: ICP from identity, as the public code does; repaired: from the yaw of the winning shift.
+  enum class Verification { as_published, repaired };
+  double period_s = 1.0;
+  double max_distance = 0.3;  ///< of descriptors; the candidate's must be smaller
+  int exclude_recent_scans = 30;
+  Verification verification = Verification::repaired;
+  VerificationConfig as_published{.icp = {.max_correspondence_m = 150.0}};
+  VerificationConfig repaired;
+  double edge_variance = 0.5;  ///< rad^2 and m^2
+  double cauchy_scale = 1.0;   ///< of the edge's robust kernel; 0: quadratic
+  void fields(Fields& f);
+};
+
 struct LoopConfig {
+  ScanContextConfig scan_context;
+  LocalMapConfig local_map;
+  /// Up to this many descriptor pairs a query compares all; above, the 10 nearest ring keys of each
+  /// descriptor.
+  int exhaustive_pairs = 2000;
+  LviSamLoopConfig lvi_sam;
+  ScLviSamLoopConfig sc_lvi_sam;
   void fields(Fields& f);
 };
 

@@ -1,0 +1,101 @@
+#include "slam/loop/loop_config.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <utility>
+
+#include "core/errors.h"
+
+namespace vsslam {
+
+namespace {
+constexpr std::array<std::pair<Method, std::string_view>, 3> kNames{{
+    {Method::lvi_sam_no_loop, "lvi-sam-no-loop"},
+    {Method::lvi_sam, "lvi-sam"},
+    {Method::sc_lvi_sam, "sc-lvi-sam"},
+}};
+}  // namespace
+
+std::string_view method_name(Method method) {
+  for (const auto& [m, name] : kNames)
+    if (m == method) return name;
+  return "?";
+}
+
+Method parse_method(std::string_view name) {
+  std::vector<std::string> names;
+  for (const auto& [method, known] : kNames) {
+    if (known == name) return method;
+    names.emplace_back(known);
+  }
+  const std::string near = nearest(name, names);
+  throw InputError(fmt::format("unknown method \"{}\" ({})", name,
+                               near.empty() ? fmt::format("one of: {}", fmt::join(names, ", "))
+                                            : fmt::format("did you mean {}?", near)));
+}
+
+const std::vector<Method>& all_methods() {
+  static const std::vector<Method> methods = [] {
+    std::vector<Method> list;
+    for (const auto& entry : kNames) list.push_back(entry.first);
+    return list;
+  }();
+  return methods;
+}
+
+void ScanContextConfig::fields(Fields& f) {
+  f("max_range_m", max_range_m, positive());
+}
+
+void LocalMapConfig::fields(Fields& f) {
+  f("half_width_scans", half_width_scans, between(0, 1000));
+  f("voxel_m", voxel_m, between(0.01, 10));
+}
+
+void IcpConfig::fields(Fields& f) {
+  f("max_correspondence_m", max_correspondence_m, positive());
+  f("max_iterations", max_iterations, between(1, 10000));
+  f("step_translation_m", step_translation_m, non_negative());
+  f("step_rotation_rad", step_rotation_rad, between(0, 1));
+  f("relative_mse_change", relative_mse_change, between(0, 1));
+}
+
+void VerificationConfig::fields(Fields& f) {
+  f("icp", icp);
+  f("max_fitness_m2", max_fitness_m2, positive());
+  f("overlap_distance_m", overlap_distance_m, positive());
+  f("min_overlap", min_overlap, between(0, 1));
+  f("min_source_points", min_source_points, at_least(3));
+  f("min_target_points", min_target_points, at_least(3));
+  f("centroid_guess_m", centroid_guess_m, non_negative());
+}
+
+void LviSamLoopConfig::fields(Fields& f) {
+  f("period_s", period_s, non_negative());
+  f("search_radius_m", search_radius_m, positive());
+  f("min_age_s", min_age_s, non_negative());
+  f("verification", verification);
+}
+
+void ScLviSamLoopConfig::fields(Fields& f) {
+  f("period_s", period_s, non_negative());
+  f("max_distance", max_distance, between(0, 2));
+  f("exclude_recent_scans", exclude_recent_scans, at_least(1));
+  f.choice("verification", verification,
+           {{"as_published", Verification::as_published}, {"repaired", Verification::repaired}});
+  f("as_published", as_published);
+  f("repaired", repaired);
+  f("edge_variance", edge_variance, positive());
+  f("cauchy_scale", cauchy_scale, non_negative());
+}
+
+void LoopConfig::fields(Fields& f) {
+  f("scan_context", scan_context);
+  f("local_map", local_map);
+  f("exhaustive_pairs", exhaustive_pairs, at_least(0));
+  f("lvi_sam", lvi_sam);
+  f("sc_lvi_sam", sc_lvi_sam);
+}
+
+}  // namespace vsslam
