@@ -1,9 +1,9 @@
 #include "worlds/corridor.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fmt/format.h>
 
 #include "core/errors.h"
 #include "worlds/room.h"
