@@ -12,11 +12,12 @@ namespace vsslam {
 
 struct DegeneracyTruthOptions {
   double voxel_m = 0.4;  ///< thinning, as the estimator's: one point per voxel and facing of the surface
-  /// A direction is degenerate if its eigenvalue per point is below this. It is the mean square of how far
-  /// (m) the residuals move per m or per rad of motion along the direction: 0.01 = (0.1)^2, so a slip of 10
-  /// cm moves the residuals by less than 1 cm RMS, which is lost in the noise of the range.
-  double translation_threshold = 0.01;
-  double rotation_threshold_m2 = 0.01;
+  /// A direction is degenerate if its eigenvalue per point is below this: the mean square of how far (m) the
+  /// planes move against the points per m, or per rad, of motion along the direction. For translations it is the
+  /// share of the points that see the direction, the same measure that the estimator's detector takes of its own
+  /// correspondences; equal thresholds judge how well it measures, not how bold it is.
+  double translation_threshold = 0.005;
+  double rotation_threshold_m2 = 0.005;
 };
 
 struct DegeneracyTruth {

@@ -13,7 +13,14 @@ function decode(run, index, count) {
   return run;
 }
 
-const RUNS = JSON.parse(document.getElementById('data').textContent).runs.map((run, i, all) => decode(run, i, all.length));
+// The name without what all results share.
+function shorten(runs) {
+  const same = runs.every(run => run.scenario === runs[0].scenario);
+  for (const run of runs) run.short = same ? run.name.slice(run.scenario.length + 3) : run.name;
+  return runs;
+}
+
+const RUNS = shorten(JSON.parse(document.getElementById('data').textContent).runs.map((run, i, all) => decode(run, i, all.length)));
 const several = RUNS.length > 1;
 const map = new MapView(document.getElementById('map'));
 let shown = RUNS[0];
@@ -31,7 +38,7 @@ function follow(key) {
 }
 
 function errorSeries(x, y) {
-  if (several) return RUNS.map(run => line(run.estimate, x, y, run.name, run.color));
+  if (several) return RUNS.map(run => line(run.estimate, x, y, run.short, run.color));
   const series = [line(shown.estimate, x, y, 'estimate', '--estimate')];
   if (shown.odometry) series.unshift(line(shown.odometry, x, y, 'odometry', '--odometry', {dashed: true}));
   return series;
@@ -52,14 +59,14 @@ function drawScene(scans) {
     line(scans, 'd', 'true_alpha_r', 'true, rotation', '--run1', {dashed: true}),
   ];
   drawChart(figure('scene'), {title: 'Oblateness α', scale: 'oblateness', xTitle: 'distance travelled (m)', series,
-                              shade: {x: scans.d, mark: i => scans.s[i] === 0}, onPoint: follow('d')});
+                              shade: {x: scans.d, mark: i => scans.s[i] === 0}, marks: [0.98], onPoint: follow('d')});
 }
 
 function eigenSeries(scans, block) {
   const colors = ['--run4', '--run5', '--run0'], names = ['smallest', 'middle', 'largest'];
   return [0, 1, 2].flatMap(i => [
     line(scans, 't', `eigen_${block}_${i}`, names[i], colors[i]),
-    line(scans, 't', `true_eigen_${block}_${i}`, '', colors[i], {dashed: true}),
+    line(scans, 't', `true_eigen_${block}_${i}`, '', colors[i], {dashed: true, hint: `true ${names[i]}`}),
   ]);
 }
 
@@ -93,7 +100,7 @@ function listLayers() {
     const color = layer.id === 'estimate' ? `var(${shown.color})` : layer.color;
     element('span', {class: `swatch ${layer.swatch || ''}`,
                      style: layer.swatch === 'dot' ? `background: ${color}` : `color: ${color}`}, box);
-    box.append(layer.name);
+    box.append(layer.id === 'estimate' && several ? shown.short : layer.name);
     input.addEventListener('change', () => {
       if (input.checked) map.hidden.delete(layer.id); else map.hidden.add(layer.id);
       map.draw();
@@ -101,10 +108,20 @@ function listLayers() {
   }
 }
 
+// The other results of the same scenario are drawn with the estimate.
+function listOthers() {
+  for (const other of map.others) {
+    const key = element('span', {class: 'key'}, document.getElementById('layers'));
+    element('span', {class: 'swatch', style: `color: var(${other.color})`}, key);
+    key.append(other.short);
+  }
+}
+
 function show(index) {
   shown = RUNS[index];
   map.show(shown, RUNS.filter(run => run !== shown && run.scenario === shown.scenario));
   listLayers();
+  listOthers();
   drawRun();
   for (const table of document.querySelectorAll('#loops [data-run]')) table.hidden = several && Number(table.dataset.run) !== index;
 }

@@ -105,7 +105,8 @@ function nearestIndex(xs, value) {
   return low > 0 && value - xs[low - 1] < xs[low] - value ? low - 1 : low;
 }
 
-// chart: {title, unit, scale, xTitle, series: [{name, color, x, y, dashed, step}], shade: {x, mark}, onPoint(x)}
+// chart: {title, unit, scale, xTitle, series: [{name, color, x, y, dashed, step}], shade: {x, mark}, marks: [y], onPoint(x)}
+// A series without a name has a hint: no place in the key, but in what the cursor says.
 function drawChart(figure, chart) {
   const series = chart.series.filter(s => s.y.some(Number.isFinite));
   figure.replaceChildren();
@@ -129,6 +130,11 @@ function drawChart(figure, chart) {
   for (const [value, text] of scale.ticks(y0, y1)) {
     svg('line', {class: 'gridline', x1: CHART.left, x2: right, y1: yOf(value), y2: yOf(value)}, root);
     svg('text', {x: CHART.left - 7, y: yOf(value) + 4, 'text-anchor': 'end'}, root, text);
+  }
+  for (const value of chart.marks || []) {
+    const y = yOf(scale.forward(value));
+    svg('line', {class: 'mark', x1: CHART.left, x2: right, y1: y, y2: y}, root);
+    svg('text', {x: right - 4, y: y - 4, 'text-anchor': 'end'}, root, label(value));
   }
   for (const value of roundTicks(x0, x1, Math.max(3, width / 90))) {
     svg('line', {class: 'axis', x1: x(value), x2: x(value), y1: bottom, y2: bottom + 4}, root);
@@ -159,7 +165,7 @@ function addCursor(figure, root, chart, series, frame) {
     element('div', {}, tip, `${chart.xTitle}: ${value.toFixed(1)}`);
     for (const s of series) {
       const y = s.y[nearestIndex(s.x, value)];
-      const row = element('div', {}, tip, `${s.name || chart.title}: ${Number.isFinite(y) ? label(y) : '–'}`);
+      const row = element('div', {}, tip, `${s.name || s.hint}: ${Number.isFinite(y) ? label(y) : '–'}`);
       row.style.color = s.color;
     }
     tip.style.left = at > frame.width / 2 ? 'auto' : `${at + 14}px`;

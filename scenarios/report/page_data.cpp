@@ -114,7 +114,7 @@ json map_json(const Cloud& points_map, const SE3& T_world_map, size_t most) {
           {"xyz", base64_array(steps)}};
 }
 
-Time stamp_of(const CsvTable& table, const ResultFolder& result, const char* file, size_t row,
+Time stamp_of(const CsvTable& table, const StoredResult& result, const char* file, size_t row,
               const char* column) {
   const auto stamp = parse_seconds(table.text(row, column));
   if (!stamp)
@@ -148,7 +148,7 @@ void add_eigenvalues(Series& series, const CsvTable& scans, size_t row, const st
     }
 }
 
-json scans_json(const ResultFolder& result, const Path& path, size_t most) {
+json scans_json(const StoredResult& result, const Path& path, size_t most) {
   const CsvTable& scans = *result.scans;
   Series series;
   const size_t stride = stride_for(scans.rows(), most);
@@ -171,7 +171,7 @@ json scans_json(const ResultFolder& result, const Path& path, size_t most) {
 
 /// Directions that the scan did not hold, at key scans, seen from above. A level LiDAR that looks ahead is
 /// assumed.
-json weak_json(const ResultFolder& result, const Path& path) {
+json weak_json(const StoredResult& result, const Path& path) {
   const CsvTable& scans = *result.scans;
   Series series;
   for (size_t row = 0; row < scans.rows(); ++row) {
@@ -193,7 +193,7 @@ json place(const SE3& T_world_base) {
 }
 
 /// Accepted edges and missed revisits as lines between true places.
-json loops_json(const ResultFolder& result, const Path& path) {
+json loops_json(const StoredResult& result, const Path& path) {
   json lines = json::array();
   const CsvTable& loops = *result.loops;
   for (size_t row = 0; row < loops.rows(); ++row) {
@@ -210,7 +210,7 @@ json loops_json(const ResultFolder& result, const Path& path) {
   return lines;
 }
 
-json missed_json(const ResultFolder& result, const Path& path) {
+json missed_json(const StoredResult& result, const Path& path) {
   const CsvTable& scans = *result.scans;
   std::map<int64_t, Time> stamps;
   json lines = json::array();
@@ -231,7 +231,7 @@ json missed_json(const ResultFolder& result, const Path& path) {
   return lines;
 }
 
-json stored_json(const ResultFolder& result, const Path& path) {
+json stored_json(const StoredResult& result, const Path& path) {
   const CsvTable& stored = *result.descriptors;
   Series series;
   for (size_t row = 0; row < stored.rows(); ++row) {
@@ -242,7 +242,7 @@ json stored_json(const ResultFolder& result, const Path& path) {
   return series.to_json();
 }
 
-json result_json(const ResultFolder& result, size_t results) {
+json result_json(const StoredResult& result, size_t results) {
   const Path path(result.truth);
   const std::pair<std::string, std::string> names = {(result.path / "estimate.tum").string(),
                                                      (result.path / "truth.tum").string()};
@@ -269,9 +269,9 @@ json result_json(const ResultFolder& result, size_t results) {
 
 }  // namespace
 
-std::string page_data(std::span<const ResultFolder> results) {
+std::string page_data(std::span<const StoredResult> results) {
   json runs = json::array();
-  for (const ResultFolder& result : results) runs.push_back(result_json(result, results.size()));
+  for (const StoredResult& result : results) runs.push_back(result_json(result, results.size()));
   std::string text = json{{"runs", runs}}.dump(-1, ' ', false, json::error_handler_t::replace);
   for (size_t at = text.find('<'); at != text.npos; at = text.find('<', at)) text.replace(at, 1, "\\u003c");
   return text;

@@ -68,7 +68,7 @@ const std::vector<Group>& groups() {
   return kGroups;
 }
 
-std::optional<double> figure_of(const ResultFolder& result, const char* pointer) {
+std::optional<double> figure_of(const StoredResult& result, const char* pointer) {
   const json::json_pointer at(pointer);
   if (!result.metrics->contains(at) || !result.metrics->at(at).is_number()) return std::nullopt;
   return result.metrics->at(at).get<double>();
@@ -95,9 +95,9 @@ std::optional<double> best_of(const std::vector<std::optional<double>>& values, 
   return best;
 }
 
-std::string figure_row(std::span<const ResultFolder> results, const Figure& figure) {
+std::string figure_row(std::span<const StoredResult> results, const Figure& figure) {
   std::vector<std::optional<double>> values;
-  for (const ResultFolder& result : results) values.push_back(figure_of(result, figure.pointer));
+  for (const StoredResult& result : results) values.push_back(figure_of(result, figure.pointer));
   if (std::none_of(values.begin(), values.end(), [](const auto& value) { return value.has_value(); }))
     return {};
   const auto best = best_of(values, figure.better);
@@ -108,9 +108,9 @@ std::string figure_row(std::span<const ResultFolder> results, const Figure& figu
   return row + fmt::format("<td class=\"unit\">{}</td></tr>\n", figure.unit);
 }
 
-std::string column_heads(std::span<const ResultFolder> results) {
+std::string column_heads(std::span<const StoredResult> results) {
   std::string heads;
-  for (const ResultFolder& result : results)
+  for (const StoredResult& result : results)
     heads += fmt::format("<th scope=\"col\">{}<small>{} · seed {}</small></th>", escape_html(result.method),
                          escape_html(result.scenario), escape_html(result.seed));
   return heads;
@@ -122,22 +122,35 @@ std::string json_text(const json& value) {
   return escape_html(value.dump(-1, ' ', false, json::error_handler_t::replace));
 }
 
-std::string expectation_rows(const ResultFolder& result, bool with_name) {
-  const auto expectations = result.metrics->find("expectations");
-  if (expectations == result.metrics->end() || !expectations->is_object()) return {};
-  std::string rows;
-  for (const auto& [name, expectation] : expectations->items()) {
+struct Expectation {
+  std::string name, value, bound;
+  bool pass = false;
+};
+
+std::vector<Expectation> expectations_of(const StoredResult& result) {
+  std::vector<Expectation> expectations;
+  const json all = result.metrics->value("expectations", json::object());
+  if (!all.is_object())
+    throw InputError(
+        fmt::format("{}: \"expectations\": expected an object", (result.path / "metrics.json").string()));
+  for (const auto& [name, expectation] : all.items()) {
     if (!expectation.is_object() || !expectation.contains("pass") || !expectation["pass"].is_boolean())
       throw InputError(fmt::format("{}: expectation \"{}\": expected value, bound and pass",
                                    (result.path / "metrics.json").string(), name));
-    const bool pass = expectation["pass"].get<bool>();
+    expectations.push_back({name, json_text(expectation.value("value", json())),
+                            json_text(expectation.value("bound", json())), expectation["pass"].get<bool>()});
+  }
+  return expectations;
+}
+
+std::string expectation_rows(const StoredResult& result, bool with_name) {
+  std::string rows;
+  for (const auto& [name, value, bound, pass] : expectations_of(result))
     rows += fmt::format(
         "<tr>{}<th scope=\"row\">{}</th><td>{}</td><td>{}</td><td><span class=\"chip "
         "{}\">{}</span></td></tr>\n",
         with_name ? fmt::format("<td class=\"text\">{}</td>", escape_html(result.name())) : "",
-        escape_html(name), json_text(expectation.value("value", json())),
-        json_text(expectation.value("bound", json())), pass ? "good" : "bad", pass ? "pass" : "fail");
-  }
+        escape_html(name), value, bound, pass ? "good" : "bad", pass ? "pass" : "fail");
   return rows;
 }
 
@@ -202,7 +215,20 @@ std::string escape_html(std::string_view text) {
   return html;
 }
 
-std::string headline_html(const ResultFolder& result) {
+std::string verdict_html(std::span<const StoredResult> results) {
+  size_t all = 0, failed = 0;
+  for (const StoredResult& result : results)
+    for (const Expectation& expectation : expectations_of(result)) {
+      ++all;
+      failed += !expectation.pass;
+    }
+  if (all == 0) return {};
+  if (failed == 0) return "<p class=\"verdict\"><span class=\"chip good\">every expectation met</span></p>";
+  return fmt::format("<p class=\"verdict\"><span class=\"chip bad\">{} of {} expectations failed</span></p>",
+                     failed, all);
+}
+
+std::string headline_html(const StoredResult& result) {
   constexpr Figure kTiles[] = {
       {"/ate_rmse_m", "ATE RMSE", "m", 3},           {"/end_error_m", "End error", "m", 3},
       {"/rpe_10m_percent", "RPE over 10 m", "%", 2}, {"/odometry_ate_rmse_m", "Odometry ATE", "m", 3},
@@ -216,7 +242,7 @@ std::string headline_html(const ResultFolder& result) {
   return tiles.empty() ? tiles : "<dl class=\"tiles\">\n" + tiles + "</dl>\n";
 }
 
-std::string metrics_html(std::span<const ResultFolder> results) {
+std::string metrics_html(std::span<const StoredResult> results) {
   std::string html;
   for (const Group& group : groups()) {
     std::string rows;
@@ -231,9 +257,9 @@ std::string metrics_html(std::span<const ResultFolder> results) {
   return html;
 }
 
-std::string expectations_html(std::span<const ResultFolder> results) {
+std::string expectations_html(std::span<const StoredResult> results) {
   std::string rows;
-  for (const ResultFolder& result : results) rows += expectation_rows(result, results.size() > 1);
+  for (const StoredResult& result : results) rows += expectation_rows(result, results.size() > 1);
   if (rows.empty()) return {};
   return fmt::format(
       "<div class=\"scroll\"><table class=\"figures\"><caption>Expectations</caption>\n<thead><tr>{}<th "
@@ -244,7 +270,7 @@ std::string expectations_html(std::span<const ResultFolder> results) {
       results.size() > 1 ? "<th scope=\"col\">Result of</th>" : "", rows);
 }
 
-std::string loops_html(std::span<const ResultFolder> results) {
+std::string loops_html(std::span<const StoredResult> results) {
   std::string html, heads;
   for (const LoopColumn& column : kShownLoopColumns)
     heads += fmt::format("<th scope=\"col\">{}</th>", column.label);
@@ -262,12 +288,12 @@ std::string loops_html(std::span<const ResultFolder> results) {
   return html;
 }
 
-std::string timing_html(std::span<const ResultFolder> results) {
+std::string timing_html(std::span<const StoredResult> results) {
   constexpr Figure kWhole[] = {{"/real_time_factor", "Real-time factor", "×", 1},
                                {"/peak_rss_mib", "Peak memory", "MiB", 0},
                                {"/cores", "Cores", "", 0}};
   std::string html;
-  for (const ResultFolder& result : results) {
+  for (const StoredResult& result : results) {
     if (!result.timing) continue;
     std::string summary, rows;
     for (const Figure& figure : kWhole)

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <set>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,7 +14,7 @@
 #include "report_page.h"
 #include "scenarios/report/page_data.h"
 #include "scenarios/report/page_tables.h"
-#include "scenarios/report/result_folder.h"
+#include "scenarios/report/stored_result.h"
 
 namespace vsslam {
 
@@ -42,32 +44,39 @@ std::string section(std::string_view id, std::string_view title, std::string_vie
                      note, content);
 }
 
-std::string title_of(std::span<const ResultFolder> results) {
+std::string title_of(std::span<const StoredResult> results) {
   if (results.size() == 1) return results[0].name();
   std::set<std::string> scenarios;
-  for (const ResultFolder& result : results) scenarios.insert(result.scenario);
+  for (const StoredResult& result : results) scenarios.insert(result.scenario);
   std::string title;
   for (const std::string& scenario : scenarios) title += (title.empty() ? "" : ", ") + scenario;
   return fmt::format("{} · {} results", title, results.size());
 }
 
-std::string page(std::span<const ResultFolder> results) {
-  const std::string timing = timing_html(results);
+std::string figures(std::span<const StoredResult> results) {
+  return fmt::format(
+      "<section id=\"figures\">\n<h2>All figures</h2>\n<div class=\"groups {}\">\n{}{}</div>\n</section>",
+      results.size() == 1 ? "one" : "many", metrics_html(results), expectations_html(results));
+}
+
+std::string page(std::span<const StoredResult> results) {
+  const bool alone = results.size() == 1;
   return fill(
       k_page_html,
       {{"title", escape_html(title_of(results))},
        {"style", std::string(k_page_css)},
-       {"headline", results.size() == 1 ? headline_html(results[0]) : ""},
-       {"metrics", metrics_html(results)},
-       {"metrics_kind", results.size() == 1 ? "one" : "many"},
-       {"expectations", expectations_html(results)},
+       {"verdict", verdict_html(results)},
+       {"headline", alone ? headline_html(results[0]) : ""},
+       {"figures_above", alone ? "" : figures(results)},
+       {"figures_below", alone ? figures(results) : ""},
        {"loops",
         section("loops", "Loop candidates",
                 "Every candidate, accepted or not, judged against exact truth. Point at a row to see it on "
                 "the map.",
                 loops_html(results))},
-       {"timing", section("timing", "Timing",
-                          "Wall clock; the only part of this page that differs between runs.", timing)},
+       {"timing",
+        section("timing", "Timing", "Wall clock; the only part of this page that differs between runs.",
+                timing_html(results))},
        {"data", page_data(results)},
        {"script", std::string(k_page_chart_js) + std::string(k_page_map_js) + std::string(k_page_js)}});
 }
@@ -75,14 +84,14 @@ std::string page(std::span<const ResultFolder> results) {
 }  // namespace
 
 void write_report(const std::filesystem::path& result_dir) {
-  const ResultFolder result = read_result_folder(result_dir);
+  const StoredResult result = read_stored_result(result_dir);
   write_file(result_dir / "report.html", page({&result, 1}));
 }
 
 void write_comparison(std::span<const std::filesystem::path> result_dirs, const std::filesystem::path& html) {
   if (result_dirs.empty()) throw InputError("a report needs at least one result folder");
-  std::vector<ResultFolder> results;
-  for (const auto& dir : result_dirs) results.push_back(read_result_folder(dir));
+  std::vector<StoredResult> results;
+  for (const auto& dir : result_dirs) results.push_back(read_stored_result(dir));
   write_file(html, page(results));
 }
 

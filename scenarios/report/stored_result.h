@@ -13,7 +13,7 @@
 
 namespace vsslam {
 
-struct ResultFolder {
+struct StoredResult {
   std::filesystem::path path;
   std::string scenario, method, seed;             ///< as metrics.json says
   std::shared_ptr<const nlohmann::json> metrics;  ///< an object
@@ -27,6 +27,6 @@ struct ResultFolder {
 };
 
 /// Throws InputError that names the file: missing (only the needed ones), empty or broken.
-ResultFolder read_result_folder(const std::filesystem::path& path);
+StoredResult read_stored_result(const std::filesystem::path& path);
 
 }  // namespace vsslam
