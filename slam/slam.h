@@ -13,6 +13,8 @@
 #include "core/samples.h"
 #include "core/stage_clock.h"
 #include "slam/graph/pose_graph.h"
+#include "slam/inertial/motion_prior.h"
+#include "slam/key_scan.h"
 #include "slam/lidar/lidar_odometry.h"
 #include "slam/loop/loop_closer.h"
 
@@ -20,6 +22,8 @@ namespace vsslam {
 
 /// Every setting of the stack: the `slam` section of a scenario.
 struct SlamConfig {
+  PriorKind prior = PriorKind::wheel_imu;
+  InertialConfig inertial;
   LidarOdometryConfig odometry;
   LoopConfig loop;
   PoseGraphConfig graph;
@@ -29,16 +33,16 @@ struct SlamConfig {
 /// What became of one scan.
 struct ScanReport {
   Time stamp;
-  int64_t scan = 0;              ///< 0, 1, 2, ... in order of arrival
-  int key = -1;                  ///< key scan id, -1: not a key scan
-  SE3 T_map_base;                ///< belief right after this scan
-  SE3 T_odom_base;               ///< odometry alone
-  Information information;       ///< blocks of the point-to-plane problem at its last iteration
+  int64_t scan = 0;         ///< 0, 1, 2, ... in order of arrival
+  int key = -1;             ///< key scan id, -1: not a key scan
+  SE3 T_map_base;           ///< belief right after this scan
+  SE3 T_odom_base;          ///< odometry alone
+  Information information;  ///< blocks of the point-to-plane problem at its last iteration
   int correspondences = 0;
   int iterations = 0;
   bool converged = false;
-  int degenerate_directions = 0; ///< of 6, held by the prior
-  bool used_prior_only = false;  ///< too few correspondences: the prior alone gave the pose
+  int degenerate_directions = 0;  ///< of 6, held by the prior
+  bool used_prior_only = false;   ///< too few correspondences: the prior alone gave the pose
 };
 
 class Slam {

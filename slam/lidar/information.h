@@ -9,8 +9,11 @@ namespace vsslam {
 struct InformationBlock {
   Vec3 eigenvalues = Vec3::Zero();
   Mat3 eigenvectors = Mat3::Identity();
-  /// Oblateness (l_max - l_min) / l_max, in [0, 1]; 1 if there is no information. Song et al. 2025, section 4.2.1.
-  double alpha() const { return eigenvalues[2] > 0 ? (eigenvalues[2] - eigenvalues[0]) / eigenvalues[2] : 1.0; }
+  /// Oblateness (l_max - l_min) / l_max, in [0, 1]; 1 if there is no information. Song et al. 2025,
+  /// section 4.2.1.
+  double alpha() const {
+    return eigenvalues[2] > 0 ? (eigenvalues[2] - eigenvalues[0]) / eigenvalues[2] : 1.0;
+  }
 };
 
 /// Information of a scan about its own pose: sensor-centred right perturbation [rotation; translation],

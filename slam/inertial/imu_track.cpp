@@ -1,0 +1,60 @@
+#include "slam/inertial/imu_track.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vsslam {
+
+namespace {
+
+double median_of_three(double a, double b, double c) {
+  return std::max(std::min(a, b), std::min(std::max(a, b), c));
+}
+
+void replace_spike(const Vec3& before, Vec3& middle, const Vec3& after, double limit) {
+  for (int k = 0; k < 3; ++k) {
+    const double median = median_of_three(before[k], middle[k], after[k]);
+    if (std::abs(middle[k] - median) > limit) middle[k] = median;
+  }
+}
+
+}  // namespace
+
+void ImuTrack::add(const ImuSample& sample) {
+  if (!sample.gyro_radps.allFinite() || !sample.accel_mps2.allFinite()) return;
+  if (!samples_.empty() && sample.stamp <= samples_.back().stamp) return;
+  samples_.push_back(sample);
+  if (samples_.size() >= 3) remove_spike(samples_.size() - 2);
+}
+
+void ImuTrack::remove_spike(size_t middle) {
+  const ImuSample& before = samples_[middle - 1];
+  const ImuSample& after = samples_[middle + 1];
+  if (seconds_between(before.stamp, after.stamp) > 2.0 * limits_.max_gap_s) return;
+  replace_spike(before.gyro_radps, samples_[middle].gyro_radps, after.gyro_radps, limits_.spike_gyro_radps);
+  replace_spike(before.accel_mps2, samples_[middle].accel_mps2, after.accel_mps2, limits_.spike_accel_mps2);
+}
+
+void ImuTrack::forget_before(Time stamp) {
+  while (samples_.size() >= 2 && samples_[1].stamp <= stamp) samples_.pop_front();
+}
+
+std::optional<ImuSample> ImuTrack::at(Time stamp) const {
+  if (samples_.empty()) return std::nullopt;
+  const auto after = std::lower_bound(samples_.begin(), samples_.end(), stamp,
+                                      [](const ImuSample& s, Time t) { return s.stamp < t; });
+  if (after == samples_.begin() || after == samples_.end()) {
+    const ImuSample& nearest = after == samples_.end() ? samples_.back() : samples_.front();
+    if (std::abs(seconds_between(nearest.stamp, stamp)) > 0.5 * limits_.max_gap_s) return std::nullopt;
+    return ImuSample{stamp, nearest.gyro_radps, nearest.accel_mps2, std::nullopt};
+  }
+  const ImuSample& a = *(after - 1);
+  const ImuSample& b = *after;
+  const double gap_s = seconds_between(a.stamp, b.stamp);
+  if (gap_s > limits_.max_gap_s) return std::nullopt;
+  const double u = seconds_between(a.stamp, stamp) / gap_s;
+  return ImuSample{stamp, a.gyro_radps + u * (b.gyro_radps - a.gyro_radps),
+                   a.accel_mps2 + u * (b.accel_mps2 - a.accel_mps2), std::nullopt};
+}
+
+}  // namespace vsslam

@@ -1,0 +1,39 @@
+// The recent IMU samples in order of time, cleaned of what no IMU measures.
+#pragma once
+
+#include <deque>
+#include <optional>
+
+#include "core/samples.h"
+#include "core/se3.h"
+
+namespace vsslam {
+
+struct ImuTrackLimits {
+  double spike_gyro_radps = 0.5;
+  double spike_accel_mps2 = 20.0;
+  double max_gap_s = 0.05;
+};
+
+class ImuTrack {
+ public:
+  explicit ImuTrack(const ImuTrackLimits& limits) : limits_(limits) {}
+
+  /// Ignores samples that are not finite or not newer than the last. A single sample far from both of its
+  /// neighbours is replaced by the median of the three.
+  void add(const ImuSample& sample);
+  /// Keeps the last sample at or before `stamp`.
+  void forget_before(Time stamp);
+
+  const std::deque<ImuSample>& samples() const { return samples_; }
+  /// Linear between samples no further apart than the largest gap; the nearest sample up to half of that
+  /// beyond the ends. Orientation is not filled.
+  std::optional<ImuSample> at(Time stamp) const;
+
+ private:
+  void remove_spike(size_t middle);
+  ImuTrackLimits limits_;
+  std::deque<ImuSample> samples_;
+};
+
+}  // namespace vsslam

@@ -1,0 +1,20 @@
+#include <algorithm>
+
+#include "slam/inertial/motion_prior.h"
+
+namespace vsslam {
+
+void MotionPath::append(Time stamp, const SE3& T_begin_t) {
+  if (stamp > knots_.back().stamp) knots_.push_back({stamp, T_begin_t});
+}
+
+SE3 MotionPath::at(Time stamp) const {
+  if (knots_.size() < 2 || stamp <= knots_.front().stamp) return knots_.front().pose;
+  auto after = std::upper_bound(knots_.begin() + 1, knots_.end() - 1, stamp,
+                                [](Time t, const StampedPose& knot) { return t < knot.stamp; });
+  const StampedPose& a = *(after - 1);
+  const StampedPose& b = *after;
+  return interpolate(a.pose, b.pose, seconds_between(a.stamp, stamp) / seconds_between(a.stamp, b.stamp));
+}
+
+}  // namespace vsslam

@@ -1,0 +1,27 @@
+#include "slam/inertial/motion_prior.h"
+
+#include "slam/inertial/dead_reckoning.h"
+#include "slam/inertial/imu_prior.h"
+
+namespace vsslam {
+
+void InertialConfig::fields(Fields& f) {
+  f("rest_gyro_radps", rest_gyro_radps, positive());
+  f("rest_accel_mps2", rest_accel_mps2, positive());
+  f("spike_gyro_radps", spike_gyro_radps, positive());
+  f("spike_accel_mps2", spike_accel_mps2, positive());
+  f("max_gap_s", max_gap_s, positive());
+  f("lidar_rotation_sigma_rad", lidar_rotation_sigma_rad, positive());
+  f("lidar_position_sigma_m", lidar_position_sigma_m, positive());
+  f("max_speed_mps", max_speed_mps, positive());
+}
+
+std::unique_ptr<MotionPrior> make_motion_prior(PriorKind kind, const InertialConfig& config,
+                                               const RigCalibration& rig) {
+  if (kind == PriorKind::imu) return std::make_unique<ImuPrior>(config, rig);
+  const bool gyro = kind == PriorKind::wheel_imu;
+  const bool wheels = kind == PriorKind::wheel_imu || kind == PriorKind::wheel;
+  return std::make_unique<DeadReckoning>(config, rig, gyro, wheels);
+}
+
+}  // namespace vsslam

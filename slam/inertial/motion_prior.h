@@ -1,0 +1,81 @@
+// What the other sensors say about the motion between and during scans: it undistorts the scan, is the first
+// guess of its pose, and decides where the LiDAR is blind.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/calibration.h"
+#include "core/config.h"
+#include "core/samples.h"
+#include "core/se3.h"
+
+namespace vsslam {
+
+/// A short motion as knots T_begin_t of the base frame; the first is the identity at `begin`.
+class MotionPath {
+ public:
+  explicit MotionPath(Time begin) : knots_{{begin, SE3()}} {}
+  /// Stamps must increase; a knot at or before the last one is ignored.
+  void append(Time stamp, const SE3& T_begin_t);
+
+  const std::vector<StampedPose>& knots() const { return knots_; }
+  const SE3& end_pose() const { return knots_.back().pose; }
+  /// Geodesic between knots; constant velocity of the nearest piece beyond the last.
+  SE3 at(Time stamp) const;
+
+ private:
+  std::vector<StampedPose> knots_;
+};
+
+/// The pose of a scan after its registration, and what of it the LiDAR has observed.
+struct OdometryFix {
+  Time stamp;
+  SE3 T_odom_base;
+  Mat3 observed_rotation = Mat3::Identity();     ///< projector on the observed directions, base frame
+  Mat3 observed_translation = Mat3::Identity();  ///< likewise
+};
+
+/// What is known when the first scan arrives.
+struct InitialState {
+  SE3 T_odom_base;
+  Vec3 gyro_bias_radps = Vec3::Zero();  ///< IMU frame
+  double gyro_bias_sigma_radps = 0.01;
+  bool at_rest = false;
+};
+
+/// wheel_imu: gyroscope and wheels; imu: preintegration; wheel: wheels alone; constant_velocity: the LiDAR
+/// alone.
+enum class PriorKind { wheel_imu, imu, wheel, constant_velocity };
+
+struct InertialConfig {
+  double rest_gyro_radps = 0.02;  ///< IMU counts as at rest below this spread of the gyroscope ...
+  double rest_accel_mps2 = 0.15;  ///< ... and of the accelerometer
+  double spike_gyro_radps = 0.5;  ///< a sample this far from both neighbours is replaced by their median
+  double spike_accel_mps2 = 20.0;
+  double max_gap_s = 0.05;                 ///< samples further apart are a dropout
+  double lidar_rotation_sigma_rad = 5e-4;  ///< of a registered scan, for the online estimate of the bias
+  double lidar_position_sigma_m = 3e-3;    ///< likewise for the velocity
+  double max_speed_mps = 30.0;             ///< beyond this a velocity estimate is discarded
+  void fields(Fields& f);
+};
+
+/// Predicts motion of the base. Implementations survive missing sensors: what is not covered by samples is
+/// continued at the velocity of the last two fixes.
+class MotionPrior {
+ public:
+  virtual ~MotionPrior() = default;
+  /// Called once, before the first path().
+  virtual void start(const InitialState& state) = 0;
+  virtual void add(const ImuSample&) {}
+  virtual void add(const WheelSample&) {}
+  /// Motion from `begin`, the stamp of the last fix, to `end`. Never throws, always finite.
+  virtual MotionPath path(Time begin, Time end) const = 0;
+  /// Called once per scan, in order.
+  virtual void correct(const OdometryFix& fix) = 0;
+};
+
+std::unique_ptr<MotionPrior> make_motion_prior(PriorKind kind, const InertialConfig& config,
+                                               const RigCalibration& rig);
+
+}  // namespace vsslam

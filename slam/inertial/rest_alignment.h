@@ -1,0 +1,24 @@
+// Which way is up, and the gyroscope's bias, from the samples before the first scan.
+#pragma once
+
+#include <deque>
+
+#include "core/calibration.h"
+#include "core/samples.h"
+#include "slam/inertial/motion_prior.h"
+
+namespace vsslam {
+
+struct RestAlignment {
+  Quat q_odom_base = Quat::Identity();  ///< gravity along -z of odom; yaw 0
+  Vec3 gyro_bias_radps = Vec3::Zero();  ///< IMU frame; zero unless at rest
+  double gyro_bias_sigma_radps = 0.01;
+  bool at_rest = false;
+};
+
+/// At rest the mean specific force points up. In motion the device's own orientation is used if there is one,
+/// else the mean specific force as the best guess. Without samples: level.
+RestAlignment align_at_rest(const std::deque<ImuSample>& samples, const ImuCalibration& imu,
+                            const InertialConfig& config);
+
+}  // namespace vsslam

@@ -1,0 +1,38 @@
+// Wheel odometry: a differential drive whose track is wider than the real one, to fit a skid-steered robot.
+#pragma once
+
+#include <deque>
+#include <optional>
+
+#include "core/calibration.h"
+#include "core/samples.h"
+
+namespace vsslam {
+
+/// What the wheels have done since power-on.
+struct WheelTravel {
+  double forward_m = 0;
+  double yaw_rad = 0;
+};
+
+class WheelTrack {
+ public:
+  WheelTrack(const WheelCalibration& wheels, double max_gap_s) : wheels_(wheels), max_gap_s_(max_gap_s) {}
+
+  /// Ignores samples that are not finite or not newer than the last.
+  void add(const WheelSample& sample);
+  /// Keeps what interpolation at `stamp` needs.
+  void forget_before(Time stamp);
+
+  const std::deque<WheelSample>& samples() const { return samples_; }
+  /// Interpolated; continued at the last rate up to half the largest gap beyond the last sample.
+  std::optional<WheelTravel> at(Time stamp) const;
+
+ private:
+  WheelTravel travel(double left_rad, double right_rad) const;
+  WheelCalibration wheels_;
+  double max_gap_s_;
+  std::deque<WheelSample> samples_;
+};
+
+}  // namespace vsslam
