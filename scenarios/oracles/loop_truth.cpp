@@ -133,8 +133,7 @@ double LoopOracle::overlap(int query, int match) const {
       const double distance = (targets_world[i] - eye_world).norm();
       if (distance > options_.max_range_m) continue;
       const bool clear = rays.far_m[i] < rays.near_m[i] || hits.object[i] == HitPacket::kNoHit;
-      if (clear || (glass_.at(static_cast<size_t>(raycaster_.material(hits.object[i], hits.triangle[i]))) &&
-                    sees(eye_world, targets_world[i])))
+      if (clear || (glass_.at(static_cast<size_t>(hits.material[i])) && sees(eye_world, targets_world[i])))
         ++seen;
     }
   }

@@ -111,6 +111,7 @@ struct SurfaceDistance::Tree {
 
 SurfaceDistance::SurfaceDistance(const World& world)
     : tree_(std::make_unique<Tree>(world_triangles(world))) {}
+SurfaceDistance::SurfaceDistance(SurfaceDistance&&) noexcept = default;
 SurfaceDistance::~SurfaceDistance() = default;
 
 double SurfaceDistance::operator()(const Vec3& point_world) const {

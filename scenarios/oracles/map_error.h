@@ -13,6 +13,7 @@ namespace vsslam {
 class SurfaceDistance {
  public:
   explicit SurfaceDistance(const World& world);
+  SurfaceDistance(SurfaceDistance&&) noexcept;
   ~SurfaceDistance();
 
   /// Distance in m from a point to the nearest surface; infinite for a world without triangles. Thread-safe.

@@ -243,18 +243,26 @@ std::string headline_html(const StoredResult& result) {
 }
 
 std::string metrics_html(std::span<const StoredResult> results) {
+  const bool alone = results.size() == 1;
   std::string html;
   for (const Group& group : groups()) {
     std::string rows;
     for (const Figure& figure : group.figures) rows += figure_row(results, figure);
     if (rows.empty()) continue;
-    html +=
-        fmt::format("<div class=\"scroll\"><table class=\"figures\"><caption>{}</caption>\n", group.title);
-    if (results.size() > 1)
-      html += fmt::format("<thead><tr><td></td>{}<td></td></tr></thead>\n", column_heads(results));
-    html += "<tbody>\n" + rows + "</tbody></table></div>\n";
+    if (alone)
+      html += fmt::format(
+          "<div class=\"scroll\"><table "
+          "class=\"figures\"><caption>{}</caption>\n<tbody>\n{}</tbody></table></div>\n",
+          group.title, rows);
+    else
+      html += fmt::format("<tbody>\n<tr><th scope=\"rowgroup\" colspan=\"{}\">{}</th></tr>\n{}</tbody>\n",
+                          results.size() + 2, group.title, rows);
   }
-  return html;
+  if (alone) return html;
+  return fmt::format(
+      "<div class=\"scroll\"><table class=\"figures\">\n<thead><tr><td></td>{}<td></td></tr></thead>\n{}"
+      "</table></div>\n",
+      column_heads(results), html);
 }
 
 std::string expectations_html(std::span<const StoredResult> results) {
@@ -267,7 +275,7 @@ std::string expectations_html(std::span<const StoredResult> results) {
       "Figure</th><th scope=\"col\">Value</th><th scope=\"col\">Bound</th><th "
       "scope=\"col\">Result</th></tr></thead>\n"
       "<tbody>\n{}</tbody></table></div>\n",
-      results.size() > 1 ? "<th scope=\"col\">Result of</th>" : "", rows);
+      results.size() > 1 ? "<th scope=\"col\" class=\"text\">Result of</th>" : "", rows);
 }
 
 std::string loops_html(std::span<const StoredResult> results) {

@@ -170,8 +170,8 @@ std::string metrics_text(const std::string& method, double ate) {
       {"degeneracy", {{"precision", 0.93}, {"recall", 0.99}, {"direction_error_deg_median", 1.2}}},
       {"restarts", 0},
       {"expectations",
-       {{"ate_rmse_m", {{"value", ate}, {"bound", {{"max", 0.5}}}, {"pass", true}}},
-        {"loops.false", {{"value", 1}, {"bound", {{"max", 0}}}, {"pass", false}}}}}}
+       {{"ate_rmse_m", {{"value", ate}, {"bound", "<= 0.5"}, {"pass", true}}},
+        {"loops.false", {{"value", 1}, {"bound", "<= 0"}, {"pass", false}}}}}}
       .dump(2);
 }
 
