@@ -39,6 +39,14 @@ RayPacket rays_to(const Vec3& from_world, std::span<const Vec3> points_world, do
   return rays;
 }
 
+/// Up to 16 points of a scan, every `every`-th from `begin` on.
+std::vector<Vec3> packet_of(const KeyScanTruth& scan, size_t begin, size_t every) {
+  std::vector<Vec3> points_world;
+  for (size_t i = begin; i < scan.points_lidar.size() && points_world.size() < kPacket; i += every)
+    points_world.push_back(scan.T_world_lidar * scan.points_lidar[i].cast<double>());
+  return points_world;
+}
+
 std::vector<bool> glass_materials(const World& world) {
   std::vector<bool> glass;
   for (const Material& material : world.materials) glass.push_back(material.glass);
@@ -117,27 +125,38 @@ bool LoopOracle::sees(const Vec3& from_world, const Vec3& point_world) const {
   return false;
 }
 
+size_t LoopOracle::count_seen(const Vec3& from_world, std::span<const Vec3> points_world) const {
+  const RayPacket rays = rays_to(from_world, points_world, options_.seen_within_m, options_.max_range_m);
+  HitPacket hits;
+  raycaster_.trace({&rays, 1}, {&hits, 1});
+  size_t seen = 0;
+  for (size_t i = 0; i < points_world.size(); ++i) {
+    if ((points_world[i] - from_world).norm() > options_.max_range_m) continue;
+    const bool clear = rays.far_m[i] < rays.near_m[i] || hits.object[i] == HitPacket::kNoHit;
+    if (clear || (glass_.at(static_cast<size_t>(hits.material[i])) && sees(from_world, points_world[i])))
+      ++seen;
+  }
+  return seen;
+}
+
 double LoopOracle::overlap(int query, int match) const {
   const KeyScanTruth& from = keys_.at(static_cast<size_t>(query));
   const Vec3 eye_world = keys_.at(static_cast<size_t>(match)).T_world_lidar.translation;
-  const Cloud& points = from.points_lidar;
   size_t seen = 0;
-  for (size_t begin = 0; begin < points.size(); begin += kPacket) {
-    std::vector<Vec3> targets_world;
-    for (size_t i = begin; i < std::min(begin + kPacket, points.size()); ++i)
-      targets_world.push_back(from.T_world_lidar * points[i].cast<double>());
-    const RayPacket rays = rays_to(eye_world, targets_world, options_.seen_within_m, options_.max_range_m);
-    HitPacket hits;
-    raycaster_.trace({&rays, 1}, {&hits, 1});
-    for (size_t i = 0; i < targets_world.size(); ++i) {
-      const double distance = (targets_world[i] - eye_world).norm();
-      if (distance > options_.max_range_m) continue;
-      const bool clear = rays.far_m[i] < rays.near_m[i] || hits.object[i] == HitPacket::kNoHit;
-      if (clear || (glass_.at(static_cast<size_t>(hits.material[i])) && sees(eye_world, targets_world[i])))
-        ++seen;
-    }
-  }
-  return points.empty() ? 0.0 : static_cast<double>(seen) / static_cast<double>(points.size());
+  for (size_t begin = 0; begin < from.points_lidar.size(); begin += kPacket)
+    seen += count_seen(eye_world, packet_of(from, begin, 1));
+  return from.points_lidar.empty()
+             ? 0.0
+             : static_cast<double>(seen) / static_cast<double>(from.points_lidar.size());
+}
+
+bool LoopOracle::overlaps(int query, int match) const {
+  constexpr size_t kEvery = 5;
+  const KeyScanTruth& from = keys_.at(static_cast<size_t>(query));
+  const Vec3 eye_world = keys_.at(static_cast<size_t>(match)).T_world_lidar.translation;
+  for (size_t begin = 0; begin < from.points_lidar.size(); begin += kEvery * kPacket)
+    if (count_seen(eye_world, packet_of(from, begin, kEvery)) > 0) return true;
+  return false;
 }
 
 std::optional<Revisit> LoopOracle::revisit(int key) const {

@@ -73,12 +73,17 @@ class LoopOracle {
 
   /// Share of the points of `query` that are seen from the pose of `match`, 0..1.
   double overlap(int query, int match) const;
+  /// Does the pose of `match` see anything of `query`? Cheaper than overlap: tries every fifth point, ends at the first
+  /// that is seen.
+  bool overlaps(int query, int match) const;
   const std::vector<Revisit>& revisits() const { return revisits_; }  ///< `closed` still open
   const std::vector<KeyScanTruth>& keys() const { return keys_; }
 
   LoopScore score(std::span<const LoopRecord> records) const;
 
  private:
+  /// How many of up to 16 points are seen.
+  size_t count_seen(const Vec3& from_world, std::span<const Vec3> points_world) const;
   bool sees(const Vec3& from_world, const Vec3& point_world) const;
   std::optional<Revisit> revisit(int key) const;
   LoopJudgement judge(const LoopRecord& record) const;

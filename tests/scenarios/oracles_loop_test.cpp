@@ -5,14 +5,15 @@
 
 #include "core/ordered_parallel.h"
 #include "core/rng.h"
+#include "scenarios/oracles/aliases.h"
 #include "scenarios/oracles/loop_truth.h"
 
 namespace vsslam {
 namespace {
 
-/// Two rooms of 10 x 10 x 3 m side by side along x, about x = 0 and x = 10, with a wall between them that has no
-/// door. Material 1 is glass.
-World two_rooms(int dividing_material) {
+/// Two rooms of 10 x 10 x 3 m side by side along x, with a wall between them that has no door. The first is about
+/// x = 0. Material 1 is glass.
+World two_rooms(int dividing_material, float wall_m) {
   World world;
   world.materials.resize(2);
   world.materials[1].glass = true;
@@ -29,13 +30,14 @@ World two_rooms(int dividing_material) {
     primitive.triangles.push_back({first, first + 2, first + 3});
   };
   Primitive& shell = mesh.primitives[0];
-  quad(shell, {-5, -5, 0}, {20, 0, 0}, {0, 10, 0});
-  quad(shell, {-5, -5, 3}, {20, 0, 0}, {0, 10, 0});
-  quad(shell, {-5, -5, 0}, {20, 0, 0}, {0, 0, 3});
-  quad(shell, {-5, 5, 0}, {20, 0, 0}, {0, 0, 3});
+  quad(shell, {-5, -5, 0}, {20 + wall_m, 0, 0}, {0, 10, 0});
+  quad(shell, {-5, -5, 3}, {20 + wall_m, 0, 0}, {0, 10, 0});
+  quad(shell, {-5, -5, 0}, {20 + wall_m, 0, 0}, {0, 0, 3});
+  quad(shell, {-5, 5, 0}, {20 + wall_m, 0, 0}, {0, 0, 3});
   quad(shell, {-5, -5, 0}, {0, 10, 0}, {0, 0, 3});
-  quad(shell, {15, -5, 0}, {0, 10, 0}, {0, 0, 3});
+  quad(shell, {15 + wall_m, -5, 0}, {0, 10, 0}, {0, 0, 3});
   quad(mesh.primitives[1], {5, -5, 0}, {0, 10, 0}, {0, 0, 3});
+  quad(mesh.primitives[1], {5 + wall_m, -5, 0}, {0, 10, 0}, {0, 0, 3});
   world.meshes.push_back(mesh);
   world.objects.emplace_back().name = "rooms";
   return world;
@@ -71,7 +73,8 @@ SE3 at(double x, double y, double yaw = 0) {
 }
 
 struct Scene {
-  explicit Scene(int dividing_material = 0) : world(two_rooms(dividing_material)), raycaster(world) {}
+  explicit Scene(int dividing_material = 0, float wall_m = 0)
+      : world(two_rooms(dividing_material, wall_m)), raycaster(world) {}
   void add(double time_s, const SE3& T_world_base) {
     keys.push_back(scan_at(world, raycaster, static_cast<int>(keys.size()), time_s, T_world_base));
   }
@@ -215,6 +218,42 @@ TEST(LoopOracle, DoesNotDependOnTheNumberOfThreads) {
   for (size_t i = 0; i < one.revisits.size(); ++i)
     EXPECT_EQ(one.revisits[i].overlap, two.revisits[i].overlap);
   for (size_t i = 0; i < records.size(); ++i) EXPECT_EQ(one.judgements[i].overlap, two.judgements[i].overlap);
+}
+
+/// The descriptor of the rays of scan_at; the LiDAR is 0.7 m above the floor.
+ScanContext descriptor(const KeyScanTruth& key) {
+  LidarMeasurement measurement;
+  for (const auto& point : key.points_lidar) measurement.truth.emplace_back().position_lidar = point;
+  ScanContextConfig config;
+  config.max_range_m = 20;
+  return true_descriptor(measurement, 0.7, config);
+}
+
+std::vector<Alias> aliases_of(const Scene& scene, double threshold) {
+  std::vector<ScanContext> descriptors;
+  for (const KeyScanTruth& key : scene.keys) descriptors.push_back(descriptor(key));
+  return find_aliases(scene.oracle(), descriptors, threshold);
+}
+
+TEST(Aliases, AreAlikeWithoutSeeingEachOther) {
+  for (const int dividing_material : {0, 1}) {
+    Scene scene(dividing_material, 0.5f);
+    scene.add(0, at(-1, 1.5));
+    scene.add(10, at(9.5, 1.5, 1.0));  // the same place of the other room
+    scene.add(20, at(-1, 1.4));        // nearly the first place
+    const auto aliases = aliases_of(scene, 0.3);
+    if (dividing_material == 1) {
+      EXPECT_TRUE(aliases.empty()) << "through glass the rooms see each other";
+      continue;
+    }
+    ASSERT_EQ(aliases.size(), 2u);
+    EXPECT_EQ(aliases[0].query, 1);
+    EXPECT_EQ(aliases[0].match, 0);
+    EXPECT_EQ(aliases[1].query, 2);
+    EXPECT_EQ(aliases[1].match, 1);
+    EXPECT_TRUE(aliases_of(scene, 0.0).empty());
+    EXPECT_THROW(find_aliases(scene.oracle(), {}, 0.3), std::logic_error);
+  }
 }
 
 TEST(KeyScanTruth, TakesPointsEvenlyFromTheWholeScan) {
