@@ -5,7 +5,7 @@ function css(name) { return getComputedStyle(document.documentElement).getProper
 // What can be shown of a run, in the order of drawing.
 const LAYERS = [
   {id: 'cloud', name: 'Map', swatch: 'dot', color: 'rgb(var(--cloud))', has: run => run.map},
-  {id: 'odometry', name: 'Odometry', color: 'var(--odometry)', has: run => run.odometry},
+  {id: 'odometry', name: 'Odometry', swatch: 'dashed', color: 'var(--odometry)', has: run => run.odometry},
   {id: 'truth', name: 'Truth', color: 'var(--truth)', has: run => run.truth},
   {id: 'estimate', name: 'Estimate', color: 'var(--estimate)', has: run => run.estimate},
   {id: 'weak', name: 'Degenerate directions', color: 'var(--weak)', has: run => run.weak && run.weak.x && run.weak.x.length},

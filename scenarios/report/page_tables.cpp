@@ -68,10 +68,10 @@ const std::vector<Group>& groups() {
   return kGroups;
 }
 
-std::optional<double> figure_of(const StoredResult& result, const char* pointer) {
+std::optional<double> number_at(const json& object, const char* pointer) {
   const json::json_pointer at(pointer);
-  if (!result.metrics->contains(at) || !result.metrics->at(at).is_number()) return std::nullopt;
-  return result.metrics->at(at).get<double>();
+  if (!object.contains(at) || !object.at(at).is_number()) return std::nullopt;
+  return object.at(at).get<double>();
 }
 
 /// With thin spaces between groups of three digits.
@@ -97,7 +97,7 @@ std::optional<double> best_of(const std::vector<std::optional<double>>& values, 
 
 std::string figure_row(std::span<const StoredResult> results, const Figure& figure) {
   std::vector<std::optional<double>> values;
-  for (const StoredResult& result : results) values.push_back(figure_of(result, figure.pointer));
+  for (const StoredResult& result : results) values.push_back(number_at(*result.metrics, figure.pointer));
   if (std::none_of(values.begin(), values.end(), [](const auto& value) { return value.has_value(); }))
     return {};
   const auto best = best_of(values, figure.better);
@@ -190,6 +190,31 @@ std::string loop_row(const CsvTable& loops, size_t row) {
   return html + "</tr>\n";
 }
 
+std::string tile(const Figure& figure, double value) {
+  return fmt::format("<div class=\"tile\"><dt>{}</dt><dd>{}<span class=\"unit\">{}</span></dd></div>\n",
+                     figure.label, number_html(value, figure.decimals), figure.unit);
+}
+
+std::string timing_tiles(const json& timing) {
+  constexpr Figure kWhole[] = {{"/real_time_factor", "Real-time factor", "×", 1},
+                               {"/peak_rss_mib", "Peak memory", "MiB", 0},
+                               {"/cores", "Cores", "", 0}};
+  std::string tiles;
+  for (const Figure& figure : kWhole)
+    if (const auto value = number_at(timing, figure.pointer)) tiles += tile(figure, *value);
+  return tiles;
+}
+
+std::string stage_rows(const json& stages) {
+  std::string rows;
+  for (const auto& [name, stage] : stages.items())
+    rows +=
+        fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td><td>{}</td><td>{}</td></tr>\n",
+                    escape_html(name), number_html(number_at(stage, "/median_ms"), 3),
+                    number_html(number_at(stage, "/p99_ms"), 3), number_html(number_at(stage, "/count"), 0));
+  return rows;
+}
+
 }  // namespace
 
 std::string escape_html(std::string_view text) {
@@ -236,9 +261,7 @@ std::string headline_html(const StoredResult& result) {
       {"/loops/precision", "Loop precision", "", 2}, {"/descriptors/count", "Descriptors", "", 0}};
   std::string tiles;
   for (const Figure& figure : kTiles)
-    if (const auto value = figure_of(result, figure.pointer))
-      tiles += fmt::format("<div class=\"tile\"><dt>{}</dt><dd>{}<span class=\"unit\">{}</span></dd></div>\n",
-                           figure.label, number_html(value, figure.decimals), figure.unit);
+    if (const auto value = number_at(*result.metrics, figure.pointer)) tiles += tile(figure, *value);
   return tiles.empty() ? tiles : "<dl class=\"tiles\">\n" + tiles + "</dl>\n";
 }
 
@@ -297,39 +320,19 @@ std::string loops_html(std::span<const StoredResult> results) {
 }
 
 std::string timing_html(std::span<const StoredResult> results) {
-  constexpr Figure kWhole[] = {{"/real_time_factor", "Real-time factor", "×", 1},
-                               {"/peak_rss_mib", "Peak memory", "MiB", 0},
-                               {"/cores", "Cores", "", 0}};
   std::string html;
   for (const StoredResult& result : results) {
     if (!result.timing) continue;
-    std::string summary, rows;
-    for (const Figure& figure : kWhole)
-      if (const json::json_pointer at(figure.pointer);
-          result.timing->contains(at) && result.timing->at(at).is_number())
-        summary += fmt::format(
-            "<div class=\"tile\"><dt>{}</dt><dd>{}<span class=\"unit\">{}</span></dd></div>\n", figure.label,
-            number_html(result.timing->at(at).get<double>(), figure.decimals), figure.unit);
-    const json stages = result.timing->value("stages", json::object());
-    for (const auto& [name, stage] : stages.items()) {
-      rows += fmt::format("<tr><th scope=\"row\">{}</th>", escape_html(name));
-      for (const auto& [key, decimals] :
-           {std::pair("median_ms", 3), std::pair("p99_ms", 3), std::pair("count", 0)}) {
-        const bool there = stage.is_object() && stage.contains(key) && stage[key].is_number();
-        rows += fmt::format(
-            "<td>{}</td>",
-            number_html(there ? std::optional(stage[key].get<double>()) : std::nullopt, decimals));
-      }
-      rows += "</tr>\n";
-    }
-    html += fmt::format("<h3>{}</h3>\n<dl class=\"tiles\">\n{}</dl>\n", escape_html(result.name()), summary);
+    html += fmt::format("<h3>{}</h3>\n<dl class=\"tiles\">\n{}</dl>\n", escape_html(result.name()),
+                        timing_tiles(*result.timing));
+    const std::string rows = stage_rows(result.timing->value("stages", json::object()));
     if (!rows.empty())
       html +=
           "<div class=\"scroll\"><table class=\"figures\"><caption>Stages</caption>\n<thead><tr><th "
-          "scope=\"col\">"
-          "Stage</th><th scope=\"col\">Median (ms)</th><th scope=\"col\">99th percentile (ms)</th><th "
-          "scope=\"col\">"
-          "Count</th></tr></thead>\n<tbody>\n" +
+          "scope=\"col\" "
+          "class=\"text\">Stage</th><th scope=\"col\">Median (ms)</th><th scope=\"col\">99th percentile "
+          "(ms)</th><th "
+          "scope=\"col\">Count</th></tr></thead>\n<tbody>\n" +
           rows + "</tbody></table></div>\n";
   }
   return html;
