@@ -50,7 +50,7 @@ struct CorridorConfig {
   double floor_unevenness_m = 0.0;  ///< RMS
   double floor_wavelength_m = 2.0;
   double tessellation_m = 1.0;  ///< longest edge of floor, walls and ceiling
-  bool textures = true;          ///< false: plain colours, for LiDAR-only use
+  bool textures = true;         ///< false: plain colours, for LiDAR-only use
   uint64_t seed = 1;
 
   void fields(Fields& f);

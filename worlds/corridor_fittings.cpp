@@ -162,14 +162,15 @@ void fit_walls(FloorPlan& plan, const CorridorLayout& layout, const CorridorConf
                const IndoorPalette& palette) {
   for (const Leg& leg : layout.legs)
     for (const bool left : {false, true}) fit_wall(plan, leg, left, c, palette);
+  const Likeness like(c.seed, c.aliasing);
   for (const Place& place : layout.places) {
     if (place.kind != Place::Kind::corner) continue;
     // Over the end of the corridor that leads away, seen by who arrives; and facing who comes along.
     const WallPanel sign = place.leg.panel(place.t0_m, -0.3, 0.3, 2.2, 2.45, palette.exit_sign);
     if (plan.carries(sign)) plan.wall_panels.push_back(sign);
-    const WallPanel poster =
-        place.leg.panel(place.t0_m, -0.3, 0.3, kPanelBottom_m, kPanelTop_m,
-                        palette.posters[static_cast<size_t>(place.index) % palette.posters.size()]);
+    const WallPanel poster = place.leg.panel(
+        place.t0_m, -0.3, 0.3, kPanelBottom_m, kPanelTop_m,
+        pick(palette.posters, like.choice("corner poster", static_cast<uint64_t>(place.index))));
     if (plan.carries(poster)) plan.wall_panels.push_back(poster);
   }
 }
@@ -227,7 +228,7 @@ void fit_pillars(FloorPlan& plan, const CorridorLayout& layout, const CorridorCo
 
 void furnish(World& world, const FloorPlan& plan, const CorridorLayout& layout, const CorridorConfig& c,
              const IndoorPalette& palette) {
-  Furnisher furnisher(world, palette);
+  Furnisher furnisher(world, palette, c.height_m);
   Floorspace space(plan, world.routes);
   const Likeness like(c.seed, c.aliasing), sides(c.seed, c.symmetry);
   constexpr FurnitureKind kRoomPieces[] = {

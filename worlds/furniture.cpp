@@ -56,7 +56,7 @@ Vec3 furniture_size_m(FurnitureKind kind) {
   return Vec3::Zero();
 }
 
-Mesh make_furniture(FurnitureKind kind, const IndoorPalette& p) {
+Mesh make_furniture(FurnitureKind kind, const IndoorPalette& p, double ceiling_m) {
   const Vec3 size = furniture_size_m(kind), foot = Vec3::Zero();
   MeshBuilder b;
   switch (kind) {
@@ -84,7 +84,7 @@ Mesh make_furniture(FurnitureKind kind, const IndoorPalette& p) {
       b.cylinder(p.metal, foot, 0.15, 0.18, size.z(), 20);
       break;
     case FurnitureKind::round_pillar:
-      b.cylinder(p.pillar.material, foot, 0.2, 0.2, size.z(), 32, 1 / p.pillar.width_m);
+      b.cylinder(p.pillar.material, foot, 0.2, 0.2, ceiling_m + 0.05, 32, 1 / p.pillar.width_m);
       break;
   }
   return b.finish(kNames[static_cast<size_t>(kind)]);
@@ -94,7 +94,7 @@ void Furnisher::place(FurnitureKind kind, const Vec3& foot_world, double heading
   const auto k = static_cast<size_t>(kind);
   if (mesh_of_kind_[k] < 0) {
     mesh_of_kind_[k] = static_cast<int>(world_.meshes.size());
-    world_.meshes.push_back(make_furniture(kind, palette_));
+    world_.meshes.push_back(make_furniture(kind, palette_, ceiling_m_));
   }
   Object object{.name = kNames[k] + std::string("_") + std::to_string(++pieces_[k]),
                 .mesh = mesh_of_kind_[k]};

@@ -1,73 +1,163 @@
 #include "worlds/indoor_palette.h"
 
 #include <array>
+#include <cmath>
+#include <functional>
 #include <string>
+
+#include "core/ordered_parallel.h"
+#include "worlds/indoor_textures.h"
 
 namespace vsslam {
 
 namespace {
 
+struct Paint {
+  Vec3f srgb;
+  float lidar_albedo;
+};
+
+Vec3f linear(const Vec3f& srgb) {
+  return srgb.unaryExpr(
+      [](float c) { return c <= 0.04045f ? c / 12.92f : std::pow((c + 0.055f) / 1.055f, 2.4f); });
+}
+
 class PaletteBuilder {
  public:
-  PaletteBuilder(uint64_t seed, bool textures) : seed_(seed), textures_(textures) {}
+  PaletteBuilder(uint64_t seed, double wall_height_m, bool textures)
+      : seed_(seed), wall_height_m_(wall_height_m), textures_(textures) {}
 
-  int add(const std::string& name, const Vec3f& color, float lidar_albedo, float roughness = 0.9f) {
-    palette_.materials.push_back(
-        {.name = name, .base_color = color, .roughness = roughness, .lidar_albedo = lidar_albedo});
+  IndoorPalette build() {
+    add_walls();
+    add_floors_and_ceiling();
+    add_doors();
+    add_signs();
+    add_stuff();
+    IndoorPalette& p = palette_;
+    p.textures.resize(painters_.size());
+    parallel_pieces(painters_.size(), 1, [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i) p.textures[i] = painters_[i]();
+    });
+    return std::move(p);
+  }
+
+ private:
+  using Painter = std::function<Texture()>;
+
+  /// `srgb` is the colour without texture, and what the texture is painted in.
+  int add(const std::string& name, const Paint& paint, float roughness, Painter painter = {}) {
+    Material m{.name = name,
+               .base_color = linear(paint.srgb),
+               .roughness = roughness,
+               .lidar_albedo = paint.lidar_albedo};
+    if (textures_ && painter) {
+      m.base_color = Vec3f::Ones();
+      m.base_color_texture = static_cast<int>(painters_.size());
+      painters_.push_back(std::move(painter));
+    }
+    palette_.materials.push_back(std::move(m));
     return static_cast<int>(palette_.materials.size()) - 1;
   }
   Material& at(int index) { return palette_.materials[static_cast<size_t>(index)]; }
-  IndoorPalette& palette() { return palette_; }
 
-  [[maybe_unused]] uint64_t seed_;
-  [[maybe_unused]] bool textures_;
+  int add_wall(const std::string& name, const Paint& paint, int width_px) {
+    const double height_m = wall_height_m_;
+    return add(name, paint, 0.9f,
+               [=, seed = seed_] { return wall_texture(seed, name, paint.srgb, width_px, 4.0, height_m); });
+  }
 
- private:
+  void add_walls() {
+    const Paint corridor{{0.85f, 0.83f, 0.77f}, 0.7f};
+    for (int i = 1; i <= 4; ++i)
+      palette_.corridor_walls.push_back(
+          {add_wall("wall_" + std::to_string(i), corridor, 1024), 4.0, wall_height_m_});
+    const std::array<Paint, 3> rooms = {Paint{{0.88f, 0.79f, 0.62f}, 0.65f},
+                                        Paint{{0.66f, 0.76f, 0.82f}, 0.65f},
+                                        Paint{{0.73f, 0.8f, 0.68f}, 0.65f}};
+    for (size_t i = 0; i < rooms.size(); ++i)
+      palette_.room_walls.push_back(
+          {add_wall("room_wall_" + std::to_string(i + 1), rooms[i], 768), 4.0, wall_height_m_});
+    const Paint concrete{{0.66f, 0.65f, 0.63f}, 0.5f};
+    palette_.pillar = {add_stuff_material("pillar", concrete, 0.3, 0.3, 0.12f), 1.0, 1.0};
+  }
+
+  void add_floors_and_ceiling() {
+    const auto tiles = [this](const std::string& name, const Paint& paint, int size_px) {
+      return add(name, paint, 0.6f,
+                 [=, seed = seed_] { return tiles_texture(seed, name, paint.srgb, size_px, 2.4); });
+    };
+    palette_.corridor_floor = {tiles("floor_tiles", {{0.56f, 0.55f, 0.53f}, 0.25f}, 1024), 2.4, 2.4};
+    const Paint oak{{0.58f, 0.43f, 0.29f}, 0.3f}, panels{{0.86f, 0.86f, 0.84f}, 0.8f};
+    palette_.room_floors = {{add("room_floor_1", oak, 0.5f,
+                                 [seed = seed_] { return parquet_texture(seed, "room_floor_1", 768, 2.4); }),
+                             2.4, 2.4},
+                            {tiles("room_floor_2", {{0.42f, 0.45f, 0.47f}, 0.22f}, 768), 2.4, 2.4}};
+    palette_.ceiling = {add("ceiling_panels", panels, 0.9f,
+                            [seed = seed_] { return ceiling_texture(seed, "ceiling_panels", 512, 2.4); }),
+                        2.4, 2.4};
+  }
+
+  void add_doors() {
+    const std::array<Paint, 4> leaves = {
+        Paint{{0.62f, 0.45f, 0.3f}, 0.45f}, Paint{{0.3f, 0.42f, 0.58f}, 0.35f},
+        Paint{{0.74f, 0.73f, 0.7f}, 0.6f}, Paint{{0.16f, 0.16f, 0.17f}, 0.05f}};
+    for (int i = 0; i < 8; ++i) {
+      const std::string name = "door_" + std::to_string(i + 1);
+      const Paint& paint = leaves[static_cast<size_t>(i) % leaves.size()];
+      palette_.doors.push_back(add(name, paint, 0.5f, [=, color = paint.srgb, seed = seed_] {
+        return door_texture(seed, name, color, 101 + 7 * i);
+      }));
+    }
+    palette_.door_frame = add("door_frame", {{0.42f, 0.43f, 0.45f}, 0.4f}, 0.5f);
+    palette_.glass = add("glass", {{0.2f, 0.24f, 0.26f}, 0.05f}, 0.05f);
+    at(palette_.glass).glass = true;
+  }
+
+  void add_signs() {
+    for (int i = 1; i <= 8; ++i) {
+      const std::string name = "poster_" + std::to_string(i);
+      palette_.posters.push_back(add(name, {{0.8f, 0.78f, 0.74f}, 0.6f}, 0.4f,
+                                     [=, seed = seed_] { return poster_texture(seed, name); }));
+    }
+    palette_.extinguisher_sign =
+        add("extinguisher_sign", {{0.78f, 0.06f, 0.05f}, 0.6f}, 0.3f,
+            [seed = seed_] { return extinguisher_texture(seed, "extinguisher_sign"); });
+    palette_.exit_sign = add("exit_sign", {{0.04f, 0.5f, 0.22f}, 0.6f}, 0.3f,
+                             [seed = seed_] { return exit_texture(seed, "exit_sign"); });
+    for (const int sign : {palette_.extinguisher_sign, palette_.exit_sign}) at(sign).retro_reflective = true;
+    palette_.lamp = add("lamp", {{0.95f, 0.95f, 0.94f}, 0.7f}, 0.3f);
+    at(palette_.lamp).emissive = {1.0f, 0.97f, 0.9f};
+    palette_.emergency_lamp = add("emergency", {{0.93f, 0.95f, 0.93f}, 0.7f}, 0.3f);
+    at(palette_.emergency_lamp).emissive = {0.5f, 0.7f, 0.5f};
+  }
+
+  int add_stuff_material(const std::string& name, const Paint& paint, double cell_x_m, double cell_y_m,
+                         float contrast) {
+    return add(name, paint, 0.7f, [=, seed = seed_] {
+      return stuff_texture(seed, name, paint.srgb, cell_x_m, cell_y_m, contrast);
+    });
+  }
+
+  void add_stuff() {
+    palette_.wood = add_stuff_material("wood", {{0.62f, 0.47f, 0.32f}, 0.5f}, 0.03, 0.5, 0.2f);
+    palette_.metal = add_stuff_material("metal", {{0.6f, 0.61f, 0.63f}, 0.35f}, 0.2, 0.2, 0.06f);
+    palette_.cardboard = add_stuff_material("cardboard", {{0.7f, 0.57f, 0.42f}, 0.55f}, 0.3, 0.03, 0.1f);
+    palette_.foliage = add_stuff_material("foliage", {{0.25f, 0.48f, 0.2f}, 0.6f}, 0.06, 0.06, 0.6f);
+    palette_.pot = add_stuff_material("pot", {{0.62f, 0.36f, 0.26f}, 0.4f}, 0.1, 0.1, 0.15f);
+    palette_.fabric = add_stuff_material("fabric", {{0.26f, 0.3f, 0.5f}, 0.35f}, 0.02, 0.02, 0.25f);
+  }
+
+  uint64_t seed_;
+  double wall_height_m_;
+  bool textures_;
+  std::vector<Painter> painters_;
   IndoorPalette palette_;
 };
 
 }  // namespace
 
 IndoorPalette make_indoor_palette(uint64_t seed, double wall_height_m, bool textures) {
-  PaletteBuilder b(seed, textures);
-  IndoorPalette& p = b.palette();
-  for (int i = 0; i < 4; ++i)
-    p.corridor_walls.push_back(
-        {b.add("wall_" + std::to_string(i + 1), {0.72f, 0.7f, 0.64f}, 0.7f), 4.0, wall_height_m});
-  const std::array<Vec3f, 3> paints = {Vec3f(0.75f, 0.62f, 0.42f), Vec3f(0.45f, 0.58f, 0.68f),
-                                       Vec3f(0.52f, 0.62f, 0.45f)};
-  for (size_t i = 0; i < paints.size(); ++i)
-    p.room_walls.push_back(
-        {b.add("room_wall_" + std::to_string(i + 1), paints[i], 0.65f), 4.0, wall_height_m});
-  p.corridor_floor = {b.add("floor_tiles", {0.28f, 0.27f, 0.26f}, 0.25f, 0.6f), 2.4, 2.4};
-  p.room_floors = {{b.add("room_floor_1", {0.3f, 0.22f, 0.16f}, 0.3f, 0.6f), 2.4, 2.4},
-                   {b.add("room_floor_2", {0.2f, 0.24f, 0.26f}, 0.22f, 0.6f), 2.4, 2.4}};
-  p.ceiling = {b.add("ceiling_panels", {0.8f, 0.8f, 0.78f}, 0.8f), 2.4, 2.4};
-  p.pillar = {b.add("pillar", {0.6f, 0.58f, 0.55f}, 0.5f), 1.2, 3.0};
-  const std::array<Vec3f, 4> leaves = {Vec3f(0.42f, 0.26f, 0.13f), Vec3f(0.15f, 0.25f, 0.42f),
-                                       Vec3f(0.55f, 0.55f, 0.52f), Vec3f(0.03f, 0.03f, 0.035f)};
-  const std::array<float, 4> door_albedo = {0.45f, 0.35f, 0.6f, 0.05f};
-  for (size_t i = 0; i < leaves.size(); ++i)
-    p.doors.push_back(b.add("door_" + std::to_string(i + 1), leaves[i], door_albedo[i], 0.5f));
-  for (int i = 0; i < 6; ++i)
-    p.posters.push_back(b.add("poster_" + std::to_string(i + 1), {0.6f, 0.5f, 0.4f}, 0.6f, 0.4f));
-  p.door_frame = b.add("door_frame", {0.35f, 0.36f, 0.38f}, 0.4f, 0.5f);
-  p.glass = b.add("glass", {0.06f, 0.08f, 0.09f}, 0.05f, 0.05f);
-  b.at(p.glass).glass = true;
-  p.extinguisher_sign = b.add("extinguisher_sign", {0.7f, 0.05f, 0.04f}, 0.6f, 0.3f);
-  p.exit_sign = b.add("exit_sign", {0.05f, 0.5f, 0.2f}, 0.6f, 0.3f);
-  for (const int sign : {p.extinguisher_sign, p.exit_sign}) b.at(sign).retro_reflective = true;
-  p.lamp = b.add("lamp", {0.9f, 0.9f, 0.88f}, 0.7f, 0.3f);
-  b.at(p.lamp).emissive = {1.0f, 0.97f, 0.9f};
-  p.emergency_lamp = b.add("emergency", {0.85f, 0.9f, 0.85f}, 0.7f, 0.3f);
-  b.at(p.emergency_lamp).emissive = {0.5f, 0.7f, 0.5f};
-  p.wood = b.add("wood", {0.45f, 0.3f, 0.17f}, 0.5f, 0.6f);
-  p.metal = b.add("metal", {0.4f, 0.41f, 0.43f}, 0.35f, 0.4f);
-  p.cardboard = b.add("cardboard", {0.5f, 0.36f, 0.22f}, 0.55f);
-  p.foliage = b.add("foliage", {0.1f, 0.26f, 0.07f}, 0.6f);
-  p.pot = b.add("pot", {0.45f, 0.2f, 0.12f}, 0.4f);
-  p.fabric = b.add("fabric", {0.12f, 0.15f, 0.3f}, 0.35f);
-  return std::move(p);
+  return PaletteBuilder(seed, wall_height_m, textures).build();
 }
 
 }  // namespace vsslam

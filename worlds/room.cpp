@@ -98,7 +98,7 @@ World make_room(const RoomConfig& c) {
   const double x = c.length_m / 2 - 2.3, y = c.width_m / 2 - 2.0;
   world.routes.push_back(rounded_loop("loop", {{x, -y, 0}, {x, y, 0}, {-x, y, 0}, {-x, -y, 0}}, 1.2, 0.5));
 
-  Furnisher furnisher(world, palette);
+  Furnisher furnisher(world, palette, c.height_m);
   const std::vector<Piece> pieces = pieces_of(c);
   const auto kept = static_cast<size_t>(std::lround(c.clutter * static_cast<double>(pieces.size())));
   for (size_t i = 0; i < kept; ++i) {
