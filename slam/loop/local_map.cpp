@@ -47,12 +47,12 @@ Cloud voxel_means(const Cloud& cloud, double voxel_m) {
   return means;
 }
 
-KeyRange keys_around(int center, int half_width, size_t key_count) {
-  return {std::max(0, center - half_width), std::min(static_cast<int>(key_count) - 1, center + half_width)};
+KeyRange keys_around(int center, int half_width, int key_count) {
+  return {std::max(0, center - half_width), std::min(key_count - 1, center + half_width)};
 }
 
-std::shared_ptr<const IcpTarget> LocalMaps::around(int center, const std::vector<KeyScan>& keys) {
-  const KeyRange range = keys_around(center, config_.half_width_scans, keys.size());
+std::shared_ptr<const IcpTarget> LocalMaps::around(int center, int query, const std::vector<KeyScan>& keys) {
+  const KeyRange range = keys_around(center, config_.half_width_scans, query);
   for (const Kept& kept : kept_)
     if (kept.center == center && kept.range == range && stands(kept, keys)) return kept.target;
   std::erase_if(kept_, [&](const Kept& kept) { return kept.center == center; });

@@ -16,12 +16,12 @@ Cloud features_in_base(const KeyScan& key, const SE3& T_base_lidar);
 /// Mean of the points in each cube of `voxel_m`, in order of first appearance.
 Cloud voxel_means(const Cloud& cloud, double voxel_m);
 
-/// Ids of the key scans around `center`: [first, last].
+/// Ids of the first `key_count` key scans around `center`: [first, last].
 struct KeyRange {
   int first = 0, last = -1;
   bool operator==(const KeyRange&) const = default;
 };
-KeyRange keys_around(int center, int half_width, size_t key_count);
+KeyRange keys_around(int center, int half_width, int key_count);
 
 /// Builds local maps and keeps the latest ones with their trees while the poses in them stand.
 class LocalMaps {
@@ -29,8 +29,9 @@ class LocalMaps {
   LocalMaps(const LocalMapConfig& config, const SE3& T_base_lidar)
       : config_(config), T_base_lidar_(T_base_lidar) {}
 
-  /// Key scans `center` +- half_width_scans in their own poses, in the base frame of `center`.
-  std::shared_ptr<const IcpTarget> around(int center, const std::vector<KeyScan>& keys);
+  /// Key scans `center` +- half_width_scans in their own poses, in the base frame of `center`. Only those
+  /// before `query`: a scan is no evidence of its own pose.
+  std::shared_ptr<const IcpTarget> around(int center, int query, const std::vector<KeyScan>& keys);
 
  private:
   struct Kept {

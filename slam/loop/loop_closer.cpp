@@ -81,9 +81,10 @@ DatabaseSize LoopCloser::database_size(const std::vector<KeyScan>& keys) const {
     size.index_bytes = 24 + 4 * capacity;
     size.descriptor_bytes = static_cast<size_t>(size.count) * sizeof(ScanContext);
   }
+  const int key_count = static_cast<int>(keys.size());
   std::vector<bool> kept(keys.size(), false);
   for (int match : impl_->detector->possible_matches(keys)) {
-    const KeyRange range = keys_around(match, impl_->config.local_map.half_width_scans, keys.size());
+    const KeyRange range = keys_around(match, impl_->config.local_map.half_width_scans, key_count);
     for (int id = range.first; id <= range.last; ++id) kept[static_cast<size_t>(id)] = true;
   }
   size.database_bytes = size.index_bytes + size.descriptor_bytes;

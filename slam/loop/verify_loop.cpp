@@ -29,7 +29,7 @@ std::string verdict(const LoopRecord& record, const VerificationConfig& config) 
 void verify_loop(const std::vector<KeyScan>& keys, const SE3& T_base_lidar, const VerificationConfig& config,
                  LocalMaps& maps, LoopRecord& record) {
   const Cloud source_query = features_in_base(keys[static_cast<size_t>(record.query)], T_base_lidar);
-  const std::shared_ptr<const IcpTarget> target = maps.around(record.match, keys);
+  const std::shared_ptr<const IcpTarget> target = maps.around(record.match, record.query, keys);
   if (source_query.size() < static_cast<size_t>(config.min_source_points) ||
       target->points().size() < static_cast<size_t>(config.min_target_points)) {
     record.why = "few_points";

@@ -69,7 +69,7 @@ void local_map_build(benchmark::State& state) {
   const double voxel_m = 0.01 * static_cast<double>(state.range(0));
   const std::vector<KeyScan> keys = corridor_keys(voxel_m);
   size_t points = 0;
-  for (auto _ : state) points = LocalMaps({.voxel_m = voxel_m}, SE3()).around(25, keys)->points().size();
+  for (auto _ : state) points = LocalMaps({.voxel_m = voxel_m}, SE3()).around(25, 51, keys)->points().size();
   state.counters["points"] = static_cast<double>(points);
 }
 BENCHMARK(local_map_build)->Arg(20)->Arg(40)->Unit(benchmark::kMillisecond);
@@ -78,7 +78,7 @@ void icp(benchmark::State& state) {
   const double voxel_m = 0.01 * static_cast<double>(state.range(0));
   const IcpConfig config{.max_correspondence_m = static_cast<double>(state.range(1))};
   const std::vector<KeyScan> keys = corridor_keys(voxel_m);
-  const auto target = LocalMaps({.voxel_m = voxel_m}, SE3()).around(25, keys);
+  const auto target = LocalMaps({.voxel_m = voxel_m}, SE3()).around(25, 51, keys);
   const SE3 truth = planar(0.3, 0.5, 0.05);
   const Cloud source = voxel_means(scan_room(long_corridor(), keys[25].T_map_base * truth, 1800), voxel_m);
   IcpResult result;

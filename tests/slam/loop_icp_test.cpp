@@ -111,15 +111,16 @@ TEST(LocalMap, KeyScansStandInTheirOwnPosesUntilThePosesChange) {
     keys[static_cast<size_t>(id)].features_lidar = {{1, 0, 0}};
   }
   LocalMaps maps({.half_width_scans = 1, .voxel_m = 0.1}, SE3(Quat::Identity(), {0, 0, 0.5}));
-  const auto map = maps.around(2, keys);
+  const auto map = maps.around(2, 5, keys);
   ASSERT_EQ(map->points().size(), 3u);  // in the base frame of key scan 2, whose x axis is the map's y
   EXPECT_LT((map->points()[0] - Eigen::Vector3f(1, 10, 0.5f)).norm(), 1e-5);
   EXPECT_LT((map->points()[1] - Eigen::Vector3f(1, 0, 0.5f)).norm(), 1e-5);
   EXPECT_LT((map->points()[2] - Eigen::Vector3f(1, -10, 0.5f)).norm(), 1e-5);
-  EXPECT_EQ(maps.around(2, keys), map);
-  EXPECT_EQ(maps.around(0, keys)->points().size(), 2u);
+  EXPECT_EQ(maps.around(2, 5, keys), map);
+  EXPECT_EQ(maps.around(0, 5, keys)->points().size(), 2u);
+  EXPECT_EQ(maps.around(2, 3, keys)->points().size(), 2u);  // key scan 3 asks, and is left out
   keys[3].T_map_base = planar(30.5, 0, M_PI / 2);
-  const auto moved = maps.around(2, keys);
+  const auto moved = maps.around(2, 5, keys);
   EXPECT_NE(moved, map);
   EXPECT_LT((moved->points()[2] - Eigen::Vector3f(1, -10.5f, 0.5f)).norm(), 1e-5);
 }
