@@ -34,7 +34,8 @@ std::string describe(const Measurement& measurement) {
     put(lidar->scan.stamp.ns), put(lidar->scan.end.ns);
     for (const LidarPoint& p : lidar->scan.points)
       put(p.x), put(p.y), put(p.z), put(p.intensity), put(p.ring), put(p.time_s);
-    for (const PointTruth& t : lidar->truth) put(t.position_lidar), put(t.range_m), put(t.object), put(t.triangle);
+    for (const PointTruth& t : lidar->truth)
+      put(t.position_lidar), put(t.range_m), put(t.object), put(t.triangle);
   }
   return bytes;
 }

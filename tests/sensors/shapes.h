@@ -77,8 +77,8 @@ inline World room_world(const Vec3& low, const Vec3& high, float albedo = 0.5f) 
 inline Trajectory along(const std::function<SE3(double)>& T_world_base, double duration_s,
                         Duration knot_interval = Duration{10'000'000}) {
   Trajectory trajectory(knot_interval);
-  for (int64_t ns = -2 * knot_interval.ns; ns <= static_cast<int64_t>(duration_s * 1e9) + 3 * knot_interval.ns;
-       ns += knot_interval.ns)
+  for (int64_t ns = -2 * knot_interval.ns;
+       ns <= static_cast<int64_t>(duration_s * 1e9) + 3 * knot_interval.ns; ns += knot_interval.ns)
     trajectory.push(Time{ns}, T_world_base(static_cast<double>(ns) * 1e-9));
   return trajectory;
 }
