@@ -1,6 +1,7 @@
 #include "sensors/lidar.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/ordered_parallel.h"
@@ -12,53 +13,54 @@ namespace vsslam {
 
 namespace {
 
-constexpr size_t kMaxLasers = 32;
 constexpr size_t kBlocksPerPiece = 16;  ///< of parallel work
 
 /// Returns of a block before they are put in order of firing.
 struct BlockReturns {
   std::array<EchoPacket, kMaxLasers> echoes;
   std::array<ReportedPacket, kMaxLasers> reported;
+  std::array<PointPacket, kMaxLasers> points;
 };
 
 /// Output of one piece of parallel work, in order of firing. Kept from scan to scan.
 struct Piece {
   std::vector<LidarPoint> points;
   std::vector<PointTruth> truth;
+  size_t size = 0;
 };
 
-/// World to the LiDAR frame at the scan's stamp, as plain numbers.
-struct ScanFrame {
-  float r[3][3];
-  double origin[3];
-  explicit ScanFrame(const SE3& T_world_lidar) {
-    const Mat3 R_lidar_world = T_world_lidar.matrix3().transpose();
-    for (int i = 0; i < 3; ++i) {
-      origin[i] = T_world_lidar.translation[i];
-      for (int k = 0; k < 3; ++k) r[i][k] = static_cast<float>(R_lidar_world(i, k));
+/// From the world to the LiDAR frame at the scan's stamp: points and normals of an echo.
+class ScanFrame {
+ public:
+  explicit ScanFrame(const SE3& T_world_lidar)
+      : R_lidar_world_(T_world_lidar.matrix3().transpose()), origin_world_(T_world_lidar.translation) {}
+  void enter(EchoPacket& echo) const {
+    const Vec3 o = origin_world_;
+    const Mat3 R = R_lidar_world_;
+    turn(R.cast<float>(), echo.normal_x, echo.normal_y, echo.normal_z);
+    for (int i = 0; i < kLanes; ++i) {
+      echo.x[i] = static_cast<float>(echo.x[i] - o.x());
+      echo.y[i] = static_cast<float>(echo.y[i] - o.y());
+      echo.z[i] = static_cast<float>(echo.z[i] - o.z());
+    }
+    turn(R.cast<float>(), echo.x, echo.y, echo.z);
+  }
+
+ private:
+  static void turn(const Eigen::Matrix3f& R, float (&x)[kLanes], float (&y)[kLanes], float (&z)[kLanes]) {
+    const float r00 = R(0, 0), r01 = R(0, 1), r02 = R(0, 2), r10 = R(1, 0), r11 = R(1, 1), r12 = R(1, 2),
+                r20 = R(2, 0), r21 = R(2, 1), r22 = R(2, 2);
+#pragma GCC ivdep
+    for (int i = 0; i < kLanes; ++i) {
+      const float a = x[i], b = y[i], c = z[i];
+      x[i] = r00 * a + r01 * b + r02 * c;
+      y[i] = r10 * a + r11 * b + r12 * c;
+      z[i] = r20 * a + r21 * b + r22 * c;
     }
   }
-  Vec3f turn(float x, float y, float z) const {
-    return {r[0][0] * x + r[0][1] * y + r[0][2] * z, r[1][0] * x + r[1][1] * y + r[1][2] * z,
-            r[2][0] * x + r[2][1] * y + r[2][2] * z};
-  }
-  Vec3f move(float x, float y, float z) const {
-    return turn(static_cast<float>(x - origin[0]), static_cast<float>(y - origin[1]),
-                static_cast<float>(z - origin[2]));
-  }
+  Mat3 R_lidar_world_;
+  Vec3 origin_world_;
 };
-
-PointTruth truth_of(const EchoPacket& echo, int i, const ScanFrame& frame) {
-  PointTruth truth;
-  truth.position_lidar = frame.move(echo.x[i], echo.y[i], echo.z[i]);
-  truth.normal_lidar = frame.turn(echo.normal_x[i], echo.normal_y[i], echo.normal_z[i]);
-  truth.range_m = echo.range_m[i];
-  truth.cos_incidence = echo.cos_incidence[i];
-  truth.object = echo.object[i];
-  truth.triangle = echo.triangle[i];
-  truth.material = static_cast<uint16_t>(echo.material[i]);
-  return truth;
-}
 
 }  // namespace
 
@@ -97,9 +99,7 @@ struct Lidar::Impl {
   bool closed(int64_t cycle, double azimuth_rad) const;
   void fire(const Revolution& revolution, const FiringBlock& block, const ScanFrame& frame,
             Piece& piece) const;
-  void emit(const Revolution& revolution, const FiringBlock& block, const BlockReturns& returns,
-            const ScanFrame& frame, Piece& piece) const;
-  LidarPoint point_of(const ReportedPacket& reported, int lane, size_t laser, size_t cycle) const;
+  void emit(const FiringBlock& block, const BlockReturns& returns, Piece& piece) const;
 };
 
 Lidar::Lidar(const LidarConfig& config, const SensorEvents& events, uint64_t seed, const Raycaster& raycaster)
@@ -166,36 +166,29 @@ uint32_t Lidar::Impl::closed_cycles(const Revolution& revolution, const FiringBl
   return bits;
 }
 
-LidarPoint Lidar::Impl::point_of(const ReportedPacket& reported, int lane, size_t laser, size_t cycle) const {
-  const Laser& mount = table.lasers[laser];
-  const SubRay& ray = beams.ray(laser, 0);
-  const double a = azimuths.reported.step_rad[cycle] * static_cast<double>(mount.fire_offset_ns) /
-                   static_cast<double>(table.cycle_ns);
-  const double ca = 1 - a * a / 2, sa = a * (1 - a * a / 6);
-  const double c = azimuths.reported.cosine[cycle] * ca - azimuths.reported.sine[cycle] * sa;
-  const double s = azimuths.reported.sine[cycle] * ca + azimuths.reported.cosine[cycle] * sa;
-  const double range = reported.range_m[lane], across = range * ray.cos_elevation;
-  LidarPoint point;
-  point.x = static_cast<float>(across * (c * ray.cos_offset - s * ray.sin_offset));
-  point.y = static_cast<float>(across * (s * ray.cos_offset + c * ray.sin_offset));
-  point.z = static_cast<float>(range * ray.sin_elevation + mount.dz_m);
-  point.intensity = reported.intensity[lane];
-  point.ring = mount.ring;
-  point.time_s = static_cast<float>(
-      1e-9 * static_cast<double>(static_cast<int64_t>(cycle) * table.cycle_ns + mount.fire_offset_ns));
-  return point;
-}
-
-void Lidar::Impl::emit(const Revolution&, const FiringBlock& block, const BlockReturns& returns,
-                       const ScanFrame& frame, Piece& piece) const {
+void Lidar::Impl::emit(const FiringBlock& block, const BlockReturns& returns, Piece& piece) const {
+  LidarPoint* point = piece.points.data() + piece.size;
+  PointTruth* truth = piece.truth.data() + piece.size;
   for (int i = 0; i < block.count; ++i) {
+    const int64_t cycle_ns = (static_cast<int64_t>(block.first) + i) * table.cycle_ns;
     for (size_t laser = 0; laser < beams.lasers; ++laser) {
-      if (!returns.reported[laser].any[i]) continue;
-      piece.points.push_back(
-          point_of(returns.reported[laser], i, laser, block.first + static_cast<size_t>(i)));
-      piece.truth.push_back(truth_of(returns.echoes[laser], i, frame));
+      const ReportedPacket& reported = returns.reported[laser];
+      if (!reported.any[i]) continue;
+      const EchoPacket& echo = returns.echoes[laser];
+      const PointPacket& at = returns.points[laser];
+      const Laser& mount = table.lasers[laser];
+      const auto time_s = static_cast<float>(1e-9 * static_cast<double>(cycle_ns + mount.fire_offset_ns));
+      *point++ = {at.x[i], at.y[i], at.z[i], reported.intensity[i], mount.ring, time_s};
+      *truth++ = {{echo.x[i], echo.y[i], echo.z[i]},
+                  {echo.normal_x[i], echo.normal_y[i], echo.normal_z[i]},
+                  echo.range_m[i],
+                  echo.cos_incidence[i],
+                  echo.object[i],
+                  echo.triangle[i],
+                  static_cast<uint16_t>(echo.material[i])};
     }
   }
+  piece.size = static_cast<size_t>(point - piece.points.data());
 }
 
 void Lidar::Impl::fire(const Revolution& revolution, const FiringBlock& block, const ScanFrame& frame,
@@ -203,11 +196,15 @@ void Lidar::Impl::fire(const Revolution& revolution, const FiringBlock& block, c
   BlockReturns returns;
   const uint32_t closed = closed_cycles(revolution, block);
   const int64_t first_cycle = revolution.first_cycle + static_cast<int64_t>(block.first);
+  receiver.receive(raycaster, beams, block, azimuths, closed, {returns.echoes.data(), beams.lasers});
   for (size_t laser = 0; laser < beams.lasers; ++laser) {
-    receiver.receive(raycaster, beams, laser, block, azimuths, closed, returns.echoes[laser]);
-    errors.report(returns.echoes[laser], laser, first_cycle, returns.reported[laser]);
+    EchoPacket& echo = returns.echoes[laser];
+    ReportedPacket& reported = returns.reported[laser];
+    errors.report(echo, laser, first_cycle, reported);
+    place_points(beams, laser, block, azimuths, reported.range_m, returns.points[laser]);
+    frame.enter(echo);
   }
-  emit(revolution, block, returns, frame, piece);
+  emit(block, returns, piece);
 }
 
 LidarMeasurement Lidar::scan(const Revolution& revolution, const Trajectory& trajectory,
@@ -224,19 +221,22 @@ LidarMeasurement Lidar::scan(const Revolution& revolution, const Trajectory& tra
   impl.pieces.resize((blocks + kBlocksPerPiece - 1) / kBlocksPerPiece);
   parallel_pieces(blocks, kBlocksPerPiece, [&](size_t first, size_t last) {
     Piece& piece = impl.pieces[first / kBlocksPerPiece];
-    piece.points.clear();
-    piece.truth.clear();
+    piece.points.resize(kBlocksPerPiece * kLanes * impl.beams.lasers);
+    piece.truth.resize(piece.points.size());
+    piece.size = 0;
     for (size_t b = first; b < last; ++b)
       impl.fire(revolution, impl.block_of(revolution, b, trajectory, T_base_lidar), frame, piece);
   });
 
   size_t total = 0;
-  for (const Piece& piece : impl.pieces) total += piece.points.size();
+  for (const Piece& piece : impl.pieces) total += piece.size;
   measurement.scan.points.reserve(total);
   measurement.truth.reserve(total);
   for (const Piece& piece : impl.pieces) {
-    measurement.scan.points.insert(measurement.scan.points.end(), piece.points.begin(), piece.points.end());
-    measurement.truth.insert(measurement.truth.end(), piece.truth.begin(), piece.truth.end());
+    const LidarPoint* const points = piece.points.data();
+    const PointTruth* const truth = piece.truth.data();
+    measurement.scan.points.insert(measurement.scan.points.end(), points, points + piece.size);
+    measurement.truth.insert(measurement.truth.end(), truth, truth + piece.size);
   }
   return measurement;
 }

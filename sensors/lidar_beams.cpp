@@ -40,31 +40,30 @@ Beams::Beams(const LidarConfig& config, const LaserTable& t)
 
 namespace {
 
-/// R(s) (c, s, 0), R(s) e_z and p(s) for each lane, in world.
-struct LaneFrames {
-  alignas(64) double radial[3][kLanes];
-  alignas(64) double up[3][kLanes];
-  alignas(64) double position[3][kLanes];
-};
-
-void lane_frames(const FiringPoses& poses, const double (&cosine)[kLanes], const double (&sine)[kLanes],
-                 const double (&s)[kLanes], LaneFrames& out) {
-  for (int k = 0; k < 3; ++k) {
-    const double x0 = poses.R_world_lidar[0](k, 0), x1 = poses.R_world_lidar[1](k, 0),
-                 x2 = poses.R_world_lidar[2](k, 0);
-    const double y0 = poses.R_world_lidar[0](k, 1), y1 = poses.R_world_lidar[1](k, 1),
-                 y2 = poses.R_world_lidar[2](k, 1);
-    const double z0 = poses.R_world_lidar[0](k, 2), z1 = poses.R_world_lidar[1](k, 2),
-                 z2 = poses.R_world_lidar[2](k, 2);
-    const double p0 = poses.p_world_lidar[0][k], p1 = poses.p_world_lidar[1][k],
-                 p2 = poses.p_world_lidar[2][k];
+/// Direction of one laser's beam about the axis, for each lane: the azimuth of its cycle, turned on by what
+/// the head turns until the laser fires (a small angle a; error a^5 / 120) and by the laser's own offset.
+struct LaneDirections {
+  alignas(64) double cosine[kLanes];
+  alignas(64) double sine[kLanes];
+  LaneDirections(const CycleAzimuths::Turning& turning, size_t first_cycle, double share_of_cycle,
+                 const SubRay& ray) {
+    const double* const c0 = &turning.cosine[first_cycle];
+    const double* const s0 = &turning.sine[first_cycle];
+    const double* const step = &turning.step_rad[first_cycle];
+    const double co = ray.cos_offset, so = ray.sin_offset;
+#pragma GCC ivdep
     for (int i = 0; i < kLanes; ++i) {
-      out.radial[k][i] =
-          (x0 + s[i] * (x1 + s[i] * x2)) * cosine[i] + (y0 + s[i] * (y1 + s[i] * y2)) * sine[i];
-      out.up[k][i] = z0 + s[i] * (z1 + s[i] * z2);
-      out.position[k][i] = p0 + s[i] * (p1 + s[i] * p2);
+      const double a = step[i] * share_of_cycle, a2 = a * a;
+      const double ca = 1 - a2 / 2 * (1 - a2 / 12), sa = a * (1 - a2 / 6);
+      const double c = c0[i] * ca - s0[i] * sa, s = s0[i] * ca + c0[i] * sa;
+      cosine[i] = c * co - s * so;
+      sine[i] = s * co + c * so;
     }
   }
+};
+
+double share_of_cycle(const LaserTable& table, size_t laser) {
+  return static_cast<double>(table.lasers[laser].fire_offset_ns) / static_cast<double>(table.cycle_ns);
 }
 
 }  // namespace
@@ -72,36 +71,51 @@ void lane_frames(const FiringPoses& poses, const double (&cosine)[kLanes], const
 void make_rays(const Beams& beams, size_t laser, size_t sub_ray, const FiringBlock& block,
                const CycleAzimuths& azimuths, double max_range_m, uint32_t closed, RayPacket& rays) {
   const SubRay& ray = beams.ray(laser, sub_ray);
+  const LaneDirections at(azimuths.actual, block.first, share_of_cycle(beams.table, laser), ray);
   const auto cycle_ns = static_cast<double>(beams.table.cycle_ns);
-  const auto fire_ns = static_cast<double>(beams.table.lasers[laser].fire_offset_ns);
-  alignas(64) double cosine[kLanes], sine[kLanes], s[kLanes];
-  for (int i = 0; i < kLanes; ++i) {
-    const size_t cycle = block.first + static_cast<size_t>(i < block.count ? i : 0);
-    // Azimuth at the start of the cycle, turned on by a small angle a (error a^5 / 120).
-    const double a = azimuths.actual.step_rad[cycle] * (fire_ns / cycle_ns), a2 = a * a;
-    const double ca = 1 - a2 / 2 * (1 - a2 / 12), sa = a * (1 - a2 / 6);
-    const double c = azimuths.actual.cosine[cycle] * ca - azimuths.actual.sine[cycle] * sa;
-    const double n = azimuths.actual.sine[cycle] * ca + azimuths.actual.cosine[cycle] * sa;
-    cosine[i] = c * ray.cos_offset - n * ray.sin_offset;
-    sine[i] = n * ray.cos_offset + c * ray.sin_offset;
-    s[i] = (i * cycle_ns + fire_ns - block.poses.mid_ns) / block.poses.half_ns;
-  }
-  LaneFrames lanes;
-  lane_frames(block.poses, cosine, sine, s, lanes);
+  const double first_s =
+      (static_cast<double>(beams.table.lasers[laser].fire_offset_ns) - block.poses.mid_ns) /
+      block.poses.half_ns;
+  const double step_s = cycle_ns / block.poses.half_ns;
 
   float* const origin[3] = {rays.origin_x, rays.origin_y, rays.origin_z};
   float* const direction[3] = {rays.direction_x, rays.direction_y, rays.direction_z};
   const double radius = beams.table.origin_offset_m, ce = ray.cos_elevation, se = ray.sin_elevation;
+  const auto& R = block.poses.R_world_lidar;
+  const auto& p = block.poses.p_world_lidar;
   for (int k = 0; k < 3; ++k) {
+    float* const o = origin[k];
+    float* const d = direction[k];
+    const double x0 = R[0](k, 0), x1 = R[1](k, 0), x2 = R[2](k, 0);
+    const double y0 = R[0](k, 1), y1 = R[1](k, 1), y2 = R[2](k, 1);
+    const double z0 = se * R[0](k, 2), z1 = se * R[1](k, 2), z2 = se * R[2](k, 2);
+    const double p0 = p[0][k], p1 = p[1][k], p2 = p[2][k];
+#pragma GCC ivdep
     for (int i = 0; i < kLanes; ++i) {
-      origin[k][i] = static_cast<float>(lanes.position[k][i] + radius * lanes.radial[k][i]);
-      direction[k][i] = static_cast<float>(ce * lanes.radial[k][i] + se * lanes.up[k][i]);
+      const double s = first_s + i * step_s;
+      const double radial = (x0 + s * (x1 + s * x2)) * at.cosine[i] + (y0 + s * (y1 + s * y2)) * at.sine[i];
+      o[i] = static_cast<float>(p0 + s * (p1 + s * p2) + radius * radial);
+      d[i] = static_cast<float>(ce * radial + (z0 + s * (z1 + s * z2)));
     }
   }
   for (int i = 0; i < kLanes; ++i) {
     const bool off = i >= block.count || (closed >> i & 1) != 0;
     rays.near_m[i] = 0;
     rays.far_m[i] = off ? -1.0f : static_cast<float>(max_range_m);
+  }
+}
+
+void place_points(const Beams& beams, size_t laser, const FiringBlock& block, const CycleAzimuths& azimuths,
+                  const float (&range_m)[kLanes], PointPacket& points) {
+  const SubRay& ray = beams.ray(laser, 0);
+  const LaneDirections at(azimuths.reported, block.first, share_of_cycle(beams.table, laser), ray);
+  const double ce = ray.cos_elevation, se = ray.sin_elevation, dz = beams.table.lasers[laser].dz_m;
+#pragma GCC ivdep
+  for (int i = 0; i < kLanes; ++i) {
+    const double range = range_m[i];
+    points.x[i] = static_cast<float>(range * ce * at.cosine[i]);
+    points.y[i] = static_cast<float>(range * ce * at.sine[i]);
+    points.z[i] = static_cast<float>(range * se + dz);
   }
 }
 

@@ -11,6 +11,7 @@
 namespace vsslam {
 
 constexpr int kLanes = RayPacket::kRays;
+constexpr size_t kMaxLasers = 32;
 
 /// One ray of a beam, in the housing's frame; a beam without footprint has one, along its centre.
 struct SubRay {
@@ -39,5 +40,12 @@ struct FiringBlock {
 /// Rays of one laser for a block. Lanes of closed cycles (bit set in `closed`) are off.
 void make_rays(const Beams& beams, size_t laser, size_t sub_ray, const FiringBlock& block,
                const CycleAzimuths& azimuths, double max_range_m, uint32_t closed, RayPacket& rays);
+
+struct PointPacket {
+  alignas(64) float x[kLanes], y[kLanes], z[kLanes];
+};
+/// Points of one laser from reported ranges, as a driver computes them, in the lidar frame at their firing.
+void place_points(const Beams& beams, size_t laser, const FiringBlock& block, const CycleAzimuths& azimuths,
+                  const float (&range_m)[kLanes], PointPacket& points);
 
 }  // namespace vsslam

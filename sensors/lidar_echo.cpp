@@ -75,9 +75,9 @@ Echo choose(LaneCandidates& lane, float merge_m, bool last, float threshold) {
 }
 
 void report(const Echo& echo, int lane, EchoPacket& out) {
+  static constexpr Candidate kNothing{};
   out.any[lane] = echo.nearest_centre ? 1 : 0;
-  if (!echo.nearest_centre) return;
-  const Candidate& truth = *echo.nearest_centre;
+  const Candidate& truth = echo.nearest_centre ? *echo.nearest_centre : kNothing;
   out.mean_range_m[lane] = echo.received > 0 ? echo.received_range / echo.received : truth.range_m;
   out.power[lane] = echo.energy;
   out.reflectivity[lane] = echo.reflectivity;
@@ -133,35 +133,49 @@ bool EchoReceiver::any_glass(const HitPacket& hits) const {
   return false;
 }
 
-void EchoReceiver::receive(const Raycaster& raycaster, const Beams& beams, size_t laser,
-                           const FiringBlock& block, const CycleAzimuths& azimuths, uint32_t closed,
-                           EchoPacket& echo) const {
-  if (beams.sub_rays > 1) return receive_footprint(raycaster, beams, laser, block, azimuths, closed, echo);
-  RayPacket rays;
-  HitPacket hits;
-  make_rays(beams, laser, 0, block, azimuths, config_.max_range_m, closed, rays);
-  raycaster.trace({&rays, 1}, {&hits, 1});
-  if (any_glass(hits)) return receive_footprint(raycaster, beams, laser, block, azimuths, closed, echo);
-  single(beams.ray(laser, 0), rays, hits, echo);
+void EchoReceiver::receive(const Raycaster& raycaster, const Beams& beams, const FiringBlock& block,
+                           const CycleAzimuths& azimuths, uint32_t closed,
+                           std::span<EchoPacket> echoes) const {
+  std::array<RayPacket, kMaxLasers> rays;
+  std::array<HitPacket, kMaxLasers> hits;
+  const bool footprint = beams.sub_rays > 1;
+  for (size_t laser = 0; laser < beams.lasers && !footprint; ++laser)
+    make_rays(beams, laser, 0, block, azimuths, config_.max_range_m, closed, rays[laser]);
+  if (!footprint) raycaster.trace({rays.data(), beams.lasers}, {hits.data(), beams.lasers});
+  for (size_t laser = 0; laser < beams.lasers; ++laser) {
+    if (footprint || any_glass(hits[laser]))
+      receive_footprint(raycaster, beams, laser, block, azimuths, closed, echoes[laser]);
+    else
+      single(beams.ray(laser, 0), rays[laser], hits[laser], echoes[laser]);
+  }
 }
 
 // One ray, one surface: nothing to weigh or choose.
 void EchoReceiver::single(const SubRay& ray, const RayPacket& rays, const HitPacket& hits,
                           EchoPacket& echo) const {
   const auto range_offset = static_cast<float>(ray.range_offset_m);
+#pragma GCC ivdep
   for (int i = 0; i < kLanes; ++i) {
-    echo.any[i] = hits.object[i] != HitPacket::kNoHit ? 1 : 0;
-    echo.cos_incidence[i] = incidence_cosine(rays, hits, i);
-    echo.range_m[i] = echo.mean_range_m[i] = hits.range_m[i] + range_offset;
-    echo.x[i] = rays.origin_x[i] + hits.range_m[i] * rays.direction_x[i];
-    echo.y[i] = rays.origin_y[i] + hits.range_m[i] * rays.direction_y[i];
-    echo.z[i] = rays.origin_z[i] + hits.range_m[i] * rays.direction_z[i];
-    echo.normal_x[i] = hits.normal_x[i], echo.normal_y[i] = hits.normal_y[i],
-    echo.normal_z[i] = hits.normal_z[i];
-    echo.object[i] = hits.object[i], echo.triangle[i] = hits.triangle[i], echo.material[i] = hits.material[i];
+    const bool hit = hits.object[i] != HitPacket::kNoHit;
+    const float range = hit ? hits.range_m[i] : 0.0f;
+    const float nx = hit ? hits.normal_x[i] : 0.0f, ny = hit ? hits.normal_y[i] : 0.0f,
+                nz = hit ? hits.normal_z[i] : 0.0f;
+    const float along = nx * rays.direction_x[i] + ny * rays.direction_y[i] + nz * rays.direction_z[i];
+    const float cosine = along < 0.0f ? -along : 0.0f;
+    echo.any[i] = hit ? 1 : 0;
+    echo.cos_incidence[i] = cosine < 1.0f ? cosine : 1.0f;
+    echo.range_m[i] = echo.mean_range_m[i] = range + range_offset;
+    echo.x[i] = rays.origin_x[i] + range * rays.direction_x[i];
+    echo.y[i] = rays.origin_y[i] + range * rays.direction_y[i];
+    echo.z[i] = rays.origin_z[i] + range * rays.direction_z[i];
+    echo.normal_x[i] = nx;
+    echo.normal_y[i] = ny;
+    echo.normal_z[i] = nz;
+    echo.object[i] = hits.object[i];
+    echo.triangle[i] = hits.triangle[i];
+    echo.material[i] = hits.material[i];
   }
   for (int i = 0; i < kLanes; ++i) {
-    if (!echo.any[i]) continue;
     const Reflectance& reflectance = reflectance_[static_cast<size_t>(hits.material[i])];
     const float returned = reflectance.albedo * echo.cos_incidence[i];
     echo.power[i] = returned * reflectance.power_gain;

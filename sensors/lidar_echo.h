@@ -1,12 +1,14 @@
 // From hits to what the receiver makes of them: echoes of a footprint, received power, and the choice of one.
 #pragma once
 
+#include <span>
+
 #include "sensors/lidar_beams.h"
 
 namespace vsslam {
 
-/// The echo that each lane reports, before noise. Lanes without one have `any[i]` == 0.
-struct EchoPacket {
+/// The echo that each lane reports, before noise. Lanes without one have `any[i]` == 0 and zeros elsewhere.
+struct alignas(64) EchoPacket {
   int any[kLanes];
   float mean_range_m[kLanes];  ///< energy-weighted over the footprint, from the axis
   float power[kLanes];         ///< albedo * cos(incidence), energy-weighted; before the 1 / range^2
@@ -31,9 +33,9 @@ struct Reflectance {
 class EchoReceiver {
  public:
   EchoReceiver(const LidarConfig& config, const World& world);
-  /// Traces the beams of one laser for a block and picks the echo of each.
-  void receive(const Raycaster& raycaster, const Beams& beams, size_t laser, const FiringBlock& block,
-               const CycleAzimuths& azimuths, uint32_t closed, EchoPacket& echo) const;
+  /// Traces the beams of all lasers for a block and picks the echo of each: echoes[laser].
+  void receive(const Raycaster& raycaster, const Beams& beams, const FiringBlock& block,
+               const CycleAzimuths& azimuths, uint32_t closed, std::span<EchoPacket> echoes) const;
 
  private:
   void receive_footprint(const Raycaster& raycaster, const Beams& beams, size_t laser,

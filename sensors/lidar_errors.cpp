@@ -15,7 +15,7 @@ constexpr BiasAt10m kBias[] = {
     {0, 0}, {1, 0.003}, {1.7320508, 0.0075}, {3.7320508, 0.022}, {5.6712818, 0.038}, {11.4300523, 0.091}};
 
 // Beyond 5 sigma nothing is drawn: an echo that strong is always seen, one that weak never.
-constexpr double kDetectionSigmas = 5;
+constexpr float kDetectionSigmas = 5;
 
 }  // namespace
 
@@ -48,46 +48,66 @@ LidarErrors::LidarErrors(const LidarConfig& config, size_t lasers, uint64_t seed
         config.incidence_bias_scale * incidence_bias_m(static_cast<double>(i) / kBiasCells, 1.0));
 }
 
-bool LidarErrors::detected(float power, float range_m, uint64_t cycle, size_t laser) const {
-  if (!config_.dropout) return true;
-  const double margin = static_cast<double>(power * detection_gain_ / (range_m * range_m));
-  const double sigma = config_.detection_sigma;
-  if (margin * (1 - kDetectionSigmas * sigma) > 1) return true;
-  if (margin * (1 + kDetectionSigmas * sigma) < 1) return false;
-  const double draw = normal_(detection_noise_.bits(cycle, laser));
-  return margin * (1 + sigma * std::clamp(draw, -kDetectionSigmas, kDetectionSigmas)) > 1;
+// Received power against the threshold; random only where noise can decide.
+void LidarErrors::detect(const EchoPacket& echo, size_t laser, int64_t first_cycle,
+                         int (&any)[kLanes]) const {
+  const auto sigma = static_cast<float>(config_.detection_sigma);
+  const float sure = 1 / (1 - kDetectionSigmas * sigma), never = 1 / (1 + kDetectionSigmas * sigma);
+  float margin[kLanes];
+  int unsure = 0;
+#pragma GCC ivdep
+  for (int i = 0; i < kLanes; ++i) {
+    margin[i] = echo.power[i] * detection_gain_ / (echo.mean_range_m[i] * echo.mean_range_m[i]);
+    const int strong = margin[i] > sure ? 1 : 0, weak = margin[i] < never ? 1 : 0;
+    unsure += echo.any[i] & ~strong & ~weak;
+    any[i] = echo.any[i] & strong;
+  }
+  if (unsure == 0) return;
+  for (int i = 0; i < kLanes; ++i) {
+    if (!echo.any[i] || margin[i] > sure || margin[i] < never) continue;
+    const float draw = normal_(detection_noise_.bits(static_cast<uint64_t>(first_cycle + i), laser));
+    any[i] = margin[i] * (1 + sigma * std::clamp(draw, -kDetectionSigmas, kDetectionSigmas)) > 1 ? 1 : 0;
+  }
+}
+
+void LidarErrors::add_bias_and_noise(const EchoPacket& echo, size_t laser, int64_t first_cycle,
+                                     float (&range_m)[kLanes]) const {
+  const float bias = laser_bias_m_[laser];
+  for (int i = 0; i < kLanes; ++i) {
+    const float cell = echo.cos_incidence[i] * kBiasCells;
+    const int k = std::min(static_cast<int>(cell), kBiasCells - 1);
+    const float low = bias_per_m_[static_cast<size_t>(k)], high = bias_per_m_[static_cast<size_t>(k) + 1];
+    const float per_m = low + (cell - static_cast<float>(k)) * (high - low);
+    range_m[i] = echo.mean_range_m[i] + (bias + per_m * echo.mean_range_m[i]);
+  }
+  const auto sigma = static_cast<float>(config_.range_sigma_m);
+  if (sigma == 0) return;
+  for (int i = 0; i < kLanes; ++i)
+    range_m[i] += sigma * normal_(range_noise_.bits(static_cast<uint64_t>(first_cycle + i), laser));
 }
 
 void LidarErrors::report(const EchoPacket& echo, size_t laser, int64_t first_cycle,
                          ReportedPacket& out) const {
-  const float bias = laser_bias_m_[laser];
-  const auto sigma = static_cast<float>(config_.range_sigma_m);
-  const auto intensity_sigma = static_cast<float>(config_.intensity_sigma);
-  const auto step = static_cast<float>(config_.range_step_m), per_step = step > 0 ? 1 / step : 0.0f;
   const auto low = static_cast<float>(config_.min_range_m), high = static_cast<float>(config_.max_range_m);
-  for (int i = 0; i < kLanes; ++i) {
-    out.any[i] = 0;
-    if (!echo.any[i]) continue;
-    const auto cycle = static_cast<uint64_t>(first_cycle + i);
-    float range = echo.mean_range_m[i];
-    if (!detected(echo.power[i], range, cycle, laser)) continue;
-    // The table ends are exact, so that head-on hits have no bias at all.
-    const float cell = echo.cos_incidence[i] * kBiasCells;
-    const auto k = std::min(static_cast<size_t>(cell), static_cast<size_t>(kBiasCells - 1));
-    const float per_m =
-        bias_per_m_[k] + (cell - static_cast<float>(k)) * (bias_per_m_[k + 1] - bias_per_m_[k]);
-    range += bias + per_m * range;
-    if (sigma > 0) range += sigma * static_cast<float>(normal_(range_noise_.bits(cycle, laser)));
-    if (step > 0) range = std::nearbyint(range * per_step) * step;
-    if (range < low || range > high) continue;
+  if (config_.dropout)
+    detect(echo, laser, first_cycle, out.any);
+  else
+    std::copy(std::begin(echo.any), std::end(echo.any), out.any);
+  add_bias_and_noise(echo, laser, first_cycle, out.range_m);
+  if (const auto step = static_cast<float>(config_.range_step_m); step > 0) {
+    const float per_step = 1 / step;
+    for (int i = 0; i < kLanes; ++i) out.range_m[i] = std::rint(out.range_m[i] * per_step) * step;
+  }
+  for (int i = 0; i < kLanes; ++i) out.any[i] &= out.range_m[i] >= low && out.range_m[i] <= high ? 1 : 0;
 
+  float noise[kLanes] = {};
+  if (const auto sigma = static_cast<float>(config_.intensity_sigma); sigma > 0)
+    for (int i = 0; i < kLanes; ++i)
+      noise[i] = sigma * normal_(intensity_noise_.bits(static_cast<uint64_t>(first_cycle + i), laser));
+  for (int i = 0; i < kLanes; ++i) {
     const bool retro = echo.reflectivity[i] > 100;
-    float byte = echo.reflectivity[i];
-    if (intensity_sigma > 0)
-      byte += intensity_sigma * static_cast<float>(normal_(intensity_noise_.bits(cycle, laser)));
-    out.any[i] = 1;
-    out.range_m[i] = range;
-    out.intensity[i] = std::nearbyint(std::clamp(byte, retro ? 101.0f : 0.0f, retro ? 255.0f : 100.0f));
+    const float least = retro ? 101.0f : 0.0f, most = retro ? 255.0f : 100.0f;
+    out.intensity[i] = std::rint(std::min(most, std::max(least, echo.reflectivity[i] + noise[i])));
   }
 }
 

@@ -9,7 +9,7 @@
 
 namespace vsslam {
 
-struct ReportedPacket {
+struct alignas(64) ReportedPacket {
   int any[kLanes];
   float range_m[kLanes];
   float intensity[kLanes];
@@ -27,7 +27,9 @@ class LidarErrors {
   double laser_bias_m(size_t laser) const { return laser_bias_m_[laser]; }
 
  private:
-  bool detected(float power, float range_m, uint64_t cycle, size_t laser) const;
+  void add_bias_and_noise(const EchoPacket& echo, size_t laser, int64_t first_cycle,
+                          float (&range_m)[kLanes]) const;
+  void detect(const EchoPacket& echo, size_t laser, int64_t first_cycle, int (&any)[kLanes]) const;
 
   LidarConfig config_;
   RandomStream range_noise_, detection_noise_, intensity_noise_;

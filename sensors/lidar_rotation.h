@@ -25,6 +25,8 @@ struct CycleAzimuths {
   struct Turning {
     std::vector<double> cosine, sine, step_rad;
     void resize(size_t cycles);
+    void set(size_t cycle, double angle_rad, double step);
+    void repeat(size_t cycle);  ///< the one before
   };
   Turning actual;    ///< where the beam goes
   Turning reported;  ///< what the data packets say
@@ -41,8 +43,10 @@ class LidarRotation {
 
  private:
   Revolution revolution_from(int64_t index, int64_t first_cycle) const;
-  double turns(int64_t cycle) const;           ///< since power-on
-  double reported_turns(int64_t block) const;  ///< encoder reading at the start of a data block
+  /// Since power-on.
+  double turns(int64_t cycle, SlowNoise::Cache& cache) const;
+  /// Encoder reading at the start of a data block, where the head stands at `actual_turns`.
+  double reported_turns(int64_t block, double actual_turns) const;
 
   double cycle_s_, turns_per_cycle_;
   int cycles_per_block_;
