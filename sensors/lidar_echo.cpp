@@ -10,7 +10,7 @@ namespace {
 constexpr float kRetroPowerGain = 100;
 // Glass: what passes one pane both ways, how little of its albedo scatters back, and the mirror-like return
 // when it is hit nearly head-on (within 1.1 deg).
-constexpr float kGlassTransmission = 0.75f, kGlassScatter = 0.02f;
+constexpr float kGlassTransmission = 0.75f, kGlassScatter = 2e-4f;
 constexpr float kGlassSpecularCos = 0.9998f, kGlassSpecularPower = 1;
 constexpr int kGlassPanes = 3;
 constexpr float kPaneGap_m = 1e-3f;
@@ -26,6 +26,7 @@ std::vector<Reflectance> reflectances(const World& world) {
     if (material.retro_reflective) r.power_gain = kRetroPowerGain;
     all.push_back(r);
   }
+  if (all.empty()) all.emplace_back();  // lanes without a hit look at material 0
   return all;
 }
 

@@ -71,7 +71,7 @@ Time Rig::needed_from() const {
 void Rig::advance(Time until, const Trajectory& trajectory, const std::function<WheelState(Time)>& wheels,
                   const std::function<void(Measurement&&)>& sink) {
   Impl& impl = *impl_;
-  if (!impl.started && trajectory.begin() <= trajectory.end()) impl.start(trajectory.begin());
+  if (!impl.started && trajectory.begin() < trajectory.end()) impl.start(trajectory.begin());
   if (!impl.started) return;
   until = std::min(until, trajectory.end());
   const auto emit = [&](auto&& measured) {
