@@ -18,6 +18,13 @@ void ObjectEvent::fields(Fields& f) {
   f.check(!object.empty(), "object", "the name of an object of the world");
 }
 
+void WheelSlipEvent::fields(Fields& f) {
+  f("t_s", t_s, non_negative());
+  f("duration_s", duration_s, positive());
+  f("left_friction", left_friction, between(0, 10));
+  f("right_friction", right_friction, between(0, 10));
+}
+
 void LightEvent::fields(Fields& f) {
   f("t_s", t_s, non_negative());
   f("group", group);
@@ -26,6 +33,7 @@ void LightEvent::fields(Fields& f) {
 
 void EventsConfig::fields(Fields& f) {
   f("sensors", sensors);
+  f("wheel_slip", wheel_slip);
   f("objects", objects);
   f("lights", lights);
 }

@@ -1,10 +1,12 @@
 // What changes during a run, by the simulated clock.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/config.h"
+#include "core/time.h"
 #include "sensors/sensor_events.h"
 #include "worlds/world.h"
 
@@ -21,6 +23,13 @@ struct ObjectEvent {
   void fields(Fields& f);
 };
 
+/// Wheels that lose their grip: oil, wet leaves, a threshold.
+struct WheelSlipEvent {
+  double t_s = 0, duration_s = 1;
+  double left_friction = 0.1, right_friction = 0.1;  ///< share of the normal friction
+  void fields(Fields& f);
+};
+
 /// Lamps that go off, on, or are dimmed. For cameras.
 struct LightEvent {
   double t_s = 0;
@@ -32,6 +41,7 @@ struct LightEvent {
 /// The `events` section of a scenario.
 struct EventsConfig {
   SensorEvents sensors;
+  std::vector<WheelSlipEvent> wheel_slip;
   std::vector<ObjectEvent> objects;
   std::vector<LightEvent> lights;
   void fields(Fields& f);

@@ -1,0 +1,84 @@
+#include "scenarios/metrics.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace vsslam {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(const std::optional<double>& value) {
+  return value && std::isfinite(*value) ? Json(*value) : Json(nullptr);
+}
+
+Json to_json(const Metrics& m) {
+  return {{"scenario", m.scenario},
+          {"method", m.method},
+          {"seed", m.seed},
+          {"duration_s", m.duration_s},
+          {"path_length_m", m.path_length_m},
+          {"scans", m.scans},
+          {"images", m.images},
+          {"ate_rmse_m", number(m.ate_rmse_m)},
+          {"ate_max_m", number(m.ate_max_m)},
+          {"rpe_10m_percent", number(m.rpe_10m_percent)},
+          {"rpe_10m_deg", number(m.rpe_10m_deg)},
+          {"end_error_m", number(m.end_error_m)},
+          {"odometry_ate_rmse_m", number(m.odometry_ate_rmse_m)},
+          {"vio_ate_rmse_m", number(m.vio_ate_rmse_m)},
+          {"map_error_mean_m", number(m.map_error_mean_m)},
+          {"descriptors",
+           {{"count", m.descriptors.count},
+            {"index_bytes", m.descriptors.index_bytes},
+            {"descriptor_bytes", m.descriptors.descriptor_bytes},
+            {"database_bytes", m.descriptors.database_bytes}}},
+          {"loops",
+           {{"candidates", m.loops.candidates},
+            {"accepted", m.loops.accepted},
+            {"true", m.loops.true_loops},
+            {"false", m.loops.false_loops},
+            {"revisits", m.loops.revisits},
+            {"recall", number(m.loops.recall)},
+            {"precision", number(m.loops.precision)}}},
+          {"degeneracy",
+           {{"precision", number(m.degeneracy.precision)},
+            {"recall", number(m.degeneracy.recall)},
+            {"direction_error_deg_median", number(m.degeneracy.direction_error_deg_median)}}},
+          {"restarts", m.restarts}};
+}
+
+std::optional<double> find(const Json& json, const std::string& metric) {
+  const Json* node = &json;
+  for (size_t begin = 0; begin <= metric.size();) {
+    const size_t end = std::min(metric.find('.', begin), metric.size());
+    const std::string key = metric.substr(begin, end - begin);
+    if (!node->is_object() || !node->contains(key)) return std::nullopt;
+    node = &node->at(key);
+    begin = end + 1;
+  }
+  return node->is_number() ? std::optional(node->get<double>()) : std::nullopt;
+}
+
+}  // namespace
+
+std::string Metrics::json() const {
+  Json json = to_json(*this);
+  Json& results = json["expectations"] = Json::object();
+  for (const ExpectationResult& e : expectations)
+    results[e.metric] = {{"value", number(e.value)}, {"bound", e.bound.text()}, {"pass", e.pass}};
+  return json.dump(2) + "\n";
+}
+
+std::optional<double> Metrics::value(const std::string& metric) const { return find(to_json(*this), metric); }
+
+void Metrics::compare(const Bounds& bounds) {
+  expectations.clear();
+  for (const auto& [metric, bound] : bounds) {
+    const std::optional<double> found = value(metric);
+    expectations.push_back({metric, found, bound, found && bound.holds(*found)});
+  }
+}
+
+}  // namespace vsslam

@@ -1,0 +1,43 @@
+// The figures of one run: metrics.json. No clock times and no facts of the host, so that bytes repeat.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scenarios/expectations.h"
+
+namespace vsslam {
+
+/// A figure that a run may not have (no loop accepted: no precision) is absent, null in the file.
+struct Metrics {
+  std::string scenario, method;
+  uint64_t seed = 0;
+  double duration_s = 0, path_length_m = 0;
+  int64_t scans = 0, images = 0;
+  std::optional<double> ate_rmse_m, ate_max_m, rpe_10m_percent, rpe_10m_deg, end_error_m;
+  std::optional<double> odometry_ate_rmse_m, vio_ate_rmse_m, map_error_mean_m;
+  struct Descriptors {
+    int64_t count = 0, index_bytes = 0, descriptor_bytes = 0, database_bytes = 0;
+  } descriptors;
+  struct Loops {
+    int64_t candidates = 0, accepted = 0, true_loops = 0, false_loops = 0, revisits = 0;
+    std::optional<double> recall, precision;
+  } loops;
+  struct Degeneracy {
+    std::optional<double> precision, recall, direction_error_deg_median;
+  } degeneracy;
+  int64_t restarts = 0;
+  std::vector<ExpectationResult> expectations;  ///< sorted by metric
+
+  /// The file's content.
+  std::string json() const;
+  /// A figure by its name, groups with a dot: "loops.false".
+  std::optional<double> value(const std::string& metric) const;
+  /// Fills `expectations`.
+  void compare(const Bounds& bounds);
+};
+
+}  // namespace vsslam

@@ -1,0 +1,128 @@
+#include "scenarios/results.h"
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <nlohmann/json.hpp>
+
+#include "core/files.h"
+#include "scenarios/evaluation/score.h"
+#include "scenarios/evaluation/trajectory_file.h"
+#include "scenarios/map_file.h"
+#include "scenarios/result_tables.h"
+
+namespace vsslam {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// Bytes of the paper's index: a vector of n four-byte ids whose capacity doubles.
+int64_t index_bytes(size_t count) {
+  constexpr int64_t kVector = 24, kId = 4;
+  return count == 0 ? 0 : kVector + kId * static_cast<int64_t>(std::bit_ceil(count));
+}
+
+Metrics::Descriptors score_descriptors(const Slam& slam) {
+  const std::vector<StoredDescriptor> stored = slam.loop_closer().stored();
+  Metrics::Descriptors d;
+  d.count = static_cast<int64_t>(stored.size());
+  d.index_bytes = index_bytes(stored.size());
+  for (const StoredDescriptor& descriptor : stored) d.descriptor_bytes += static_cast<int64_t>(descriptor.bytes);
+  d.database_bytes = d.descriptor_bytes;
+  return d;
+}
+
+Metrics::Degeneracy score_degeneracy_of(const Estimation& estimation) {
+  std::vector<DegeneracyReport> reports;
+  for (const ScanReport& report : estimation.reports())
+    reports.push_back({report.information, report.degenerate_directions});
+  const DegeneracyScore score = score_degeneracy(reports, estimation.degeneracy_truth());
+  return {score.precision, score.recall, score.direction_error_deg_median};
+}
+
+void score_loops(const RunRecord& record, ScoredRun& scored) {
+  const LoopOracle oracle(record.world, record.raycaster, record.estimation.key_scan_truth());
+  scored.loops = oracle.score(record.estimation.slam().loops());
+  Metrics::Loops& loops = scored.metrics.loops;
+  loops.candidates = scored.loops.candidates;
+  loops.accepted = scored.loops.accepted;
+  loops.true_loops = scored.loops.true_loops;
+  loops.false_loops = scored.loops.false_loops;
+  loops.revisits = static_cast<int64_t>(scored.loops.revisits.size());
+  loops.recall = scored.loops.recall();
+  loops.precision = scored.loops.precision();
+}
+
+void score_trajectories(const RunRecord& record, Metrics& m) {
+  const std::vector<StampedPose>& truth = record.estimation.truth_world_base();
+  if (truth.empty()) return;
+  const TrajectoryScore estimate = score(record.estimation.slam().trajectory_map_base(), truth);
+  m.path_length_m = estimate.path_length_m;
+  m.ate_rmse_m = estimate.ate_rmse_m;
+  m.ate_max_m = estimate.ate_max_m;
+  m.rpe_10m_percent = estimate.rpe_10m_percent;
+  m.rpe_10m_deg = estimate.rpe_10m_deg;
+  m.end_error_m = estimate.end_error_m;
+  m.odometry_ate_rmse_m = score(record.estimation.slam().trajectory_odom_base(), truth).ate_rmse_m;
+  const Cloud map = record.estimation.slam().map_cloud(record.scenario.map_voxel_m);
+  if (!map.empty())
+    m.map_error_mean_m = map_error(map, estimate.alignment.T_truth_estimate, record.surface).mean_m;
+}
+
+Scenario scenario_of(const RunRecord& record) {
+  Scenario scenario = record.scenario;
+  scenario.methods = {std::string(method_name(record.estimation.method()))};
+  scenario.seeds = {record.seed};
+  return scenario;
+}
+
+}  // namespace
+
+ScoredRun score_run(const RunRecord& record) {
+  ScoredRun scored;
+  Metrics& m = scored.metrics;
+  m.scenario = record.scenario.name;
+  m.method = method_name(record.estimation.method());
+  m.seed = record.seed;
+  m.duration_s = record.duration_s;
+  m.scans = static_cast<int64_t>(record.estimation.reports().size());
+  score_trajectories(record, m);
+  m.descriptors = score_descriptors(record.estimation.slam());
+  score_loops(record, scored);
+  m.degeneracy = score_degeneracy_of(record.estimation);
+  m.compare(bounds_for(record.scenario.expect, m.method));
+  return scored;
+}
+
+void write_results(const fs::path& folder, const RunRecord& record, const ScoredRun& scored) {
+  const Slam& slam = record.estimation.slam();
+  write_file(folder / "scenario.yaml", save_config(scenario_of(record)));
+  write_file(folder / "metrics.json", scored.metrics.json());
+  write_tum(folder / "truth.tum", record.estimation.truth_world_base());
+  write_tum(folder / "estimate.tum", slam.trajectory_map_base());
+  write_tum(folder / "odometry.tum", slam.trajectory_odom_base());
+  write_file(folder / "scans.csv", scans_csv(record.estimation, scored.loops));
+  write_file(folder / "loops.csv", loops_csv(slam.loops(), scored.loops));
+  write_file(folder / "descriptors.csv", descriptors_csv(slam));
+  slam.pose_graph().write_g2o(folder / "pose_graph.g2o");
+  write_ply(folder / "map.ply", slam.map_cloud(record.scenario.map_voxel_m));
+}
+
+void write_timing(const fs::path& folder, const Timing& timing, const WallClock& clock) {
+  nlohmann::ordered_json stages = nlohmann::ordered_json::object();
+  for (const WallClock::StageTimes& s : clock.summary())
+    stages[s.stage] = {{"median_ms", s.median_ms}, {"p99_ms", s.p99_ms}, {"count", s.count}, {"total_s", s.total_s}};
+  const nlohmann::ordered_json json = {{"real_time_factor", timing.real_time_factor},
+                                       {"wall_s", timing.wall_s},
+                                       {"peak_rss_mib", peak_rss_mib()},
+                                       {"cores", available_cores()},
+                                       {"stages", stages}};
+  write_file(folder / "timing.json", json.dump(2) + "\n");
+}
+
+fs::path result_path(const fs::path& out, const std::string& scenario, Method method, uint64_t seed) {
+  return out / scenario / method_name(method) / fmt::format("seed_{}", seed);
+}
+
+}  // namespace vsslam

@@ -1,0 +1,151 @@
+#include "scenarios/seed_run.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "scenarios/report/report.h"
+#include "scenarios/result_folder.h"
+#include "scenarios/results.h"
+
+namespace vsslam {
+
+namespace {
+
+constexpr size_t kQueueChunks = 16;  // bounds the memory: 1.6 s of measurements
+
+}  // namespace
+
+SeedRun::SeedRun(const RunContext& context, const std::vector<Method>& methods, uint64_t seed)
+    : context_(context), seed_(seed) {
+  for (const Method method : methods) {
+    lanes_.push_back(std::make_unique<Lane>());
+    lanes_.back()->method = method;
+  }
+}
+
+bool SeedRun::finished() const {
+  return std::all_of(lanes_.begin(), lanes_.end(), [](const auto& lane) { return lane->written; });
+}
+
+Step SeedRun::claim() {
+  if (opening_) return {};
+  if (!sensing_) return open();
+  Lane* fullest = nullptr;
+  for (const auto& lane : lanes_) {
+    if (lane->busy || lane->written) continue;
+    if (lane->queue.empty() && sensing_->ended() && !sensing_busy_) return write(*lane);
+    if (!lane->queue.empty() && (fullest == nullptr || lane->queue.size() > fullest->queue.size()))
+      fullest = lane.get();
+  }
+  if (fullest != nullptr) return estimate(*fullest);
+  if (may_sense()) return sense();
+  return {};
+}
+
+Step SeedRun::open() {
+  opening_ = true;
+  auto made = std::make_shared<std::unique_ptr<Sensing>>();
+  return {.work =
+              [this, made] {
+                start_ns_ = sensing_clock_.now_ns();
+                for (const auto& lane : lanes_)
+                  lane->estimation = std::make_unique<Estimation>(context_.scenario, lane->method, &lane->clock);
+                *made = std::make_unique<Sensing>(context_.scenario, context_.world, seed_, &sensing_clock_);
+              },
+          .commit =
+              [this, made] {
+                sensing_ = std::move(*made);
+                opening_ = false;
+                context_.on_expected(sensing_->expected_duration_s() * static_cast<double>(lanes_.size()));
+              }};
+}
+
+// Estimates older than the latency must have been made before the robot drives on.
+Time SeedRun::belief_due() const {
+  return sensing_->until() - Duration::from_seconds(context_.scenario.closed_loop_latency_s);
+}
+
+bool SeedRun::may_sense() const {
+  if (sensing_busy_ || sensing_->ended()) return false;
+  const bool closed_loop = context_.scenario.closed_loop;
+  return std::all_of(lanes_.begin(), lanes_.end(), [&](const auto& lane) {
+    return lane->queue.size() < kQueueChunks && (!closed_loop || lane->consumed >= belief_due());
+  });
+}
+
+std::optional<Belief> SeedRun::belief() {
+  if (!context_.scenario.closed_loop) return std::nullopt;
+  std::deque<Belief>& beliefs = lanes_.front()->beliefs;
+  const auto usable = [&](const Belief& b) { return b.available <= belief_due(); };
+  while (beliefs.size() > 1 && usable(beliefs[1])) beliefs.pop_front();
+  return !beliefs.empty() && usable(beliefs.front()) ? std::optional(beliefs.front()) : std::nullopt;
+}
+
+Step SeedRun::sense() {
+  sensing_busy_ = true;
+  auto chunk = std::make_shared<Chunk>();
+  return {.work = [this, chunk, belief = belief()] { *chunk = sensing_->next(belief); },
+          .commit =
+              [this, chunk] {
+                for (const auto& lane : lanes_) lane->queue.push_back(chunk);
+                sensing_busy_ = false;
+              }};
+}
+
+Step SeedRun::estimate(Lane& lane) {
+  lane.busy = true;
+  const std::shared_ptr<const Chunk> chunk = lane.queue.front();
+  auto beliefs = std::make_shared<std::vector<Belief>>();
+  return {.work = [&lane, chunk, beliefs] { *beliefs = lane.estimation->add(*chunk); },
+          .commit =
+              [this, &lane, chunk, beliefs] {
+                lane.queue.pop_front();
+                if (context_.scenario.closed_loop)
+                  lane.beliefs.insert(lane.beliefs.end(), beliefs->begin(), beliefs->end());
+                context_.on_progress((chunk->until - lane.consumed).seconds(), static_cast<int64_t>(beliefs->size()));
+                lane.consumed = chunk->until;
+                lane.busy = false;
+              }};
+}
+
+Step SeedRun::write(Lane& lane) {
+  lane.busy = true;
+  auto result = std::make_shared<FinishedRun>();
+  return {.work = [this, &lane, result] { *result = write_result(lane); },
+          .commit =
+              [this, &lane, result] {
+                context_.on_finished(std::move(*result));
+                lane.estimation.reset();
+                lane.busy = false;
+                lane.written = true;
+              }};
+}
+
+FinishedRun SeedRun::write_result(Lane& lane) {
+  lane.estimation->finish();
+  FinishedRun run{.method = lane.method, .seed = seed_};
+  run.folder = result_path(context_.options.out, context_.scenario.name, lane.method, seed_);
+  if (sensing_->outcome() == DriveOutcome::stuck || sensing_->outcome() == DriveOutcome::collided)
+    run.failure = sensing_->outcome_text();
+
+  const RunRecord record{.scenario = context_.scenario, .world = context_.world, .raycaster = sensing_->raycaster(),
+                         .surface = context_.surface(), .estimation = *lane.estimation, .seed = seed_,
+                         .duration_s = sensing_->until().seconds()};
+  ResultFolder folder(run.folder);
+  {
+    StageTimer timer(&lane.clock, "score_and_write");
+    const ScoredRun scored = score_run(record);
+    write_results(folder.path(), record, scored);
+    run.metrics = scored.metrics;
+  }
+  WallClock clock = lane.clock;
+  clock.add(sensing_clock_);
+  const double wall_s = static_cast<double>(clock.now_ns() - start_ns_) * 1e-9;
+  run.real_time_factor = record.duration_s / wall_s;
+  write_timing(folder.path(), {.wall_s = wall_s, .real_time_factor = run.real_time_factor}, clock);
+  write_report(folder.path());
+  folder.commit();
+  return run;
+}
+
+}  // namespace vsslam

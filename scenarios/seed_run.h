@@ -1,0 +1,68 @@
+// One seed of a scenario as a pipeline: sensing -> queue -> estimation, once per method -> result folder.
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "scenarios/estimation.h"
+#include "scenarios/oracles/map_error.h"
+#include "scenarios/pipeline.h"
+#include "scenarios/runner.h"
+#include "scenarios/sensing.h"
+#include "scenarios/wall_clock.h"
+
+namespace vsslam {
+
+/// What all seeds of a run share.
+struct RunContext {
+  const Scenario& scenario;
+  const World& world;
+  RunOptions options;
+  std::function<const SurfaceDistance&()> surface;      ///< built by the first caller; thread-safe
+  std::function<void(FinishedRun)> on_finished;         ///< called under the schedule's lock
+  std::function<void(double s, int64_t scans)> on_progress;  ///< simulated time and scans estimated since the last call
+  std::function<void(double expected_s)> on_expected;   ///< of all methods of this seed
+};
+
+class SeedRun final : public Pipeline {
+ public:
+  SeedRun(const RunContext& context, const std::vector<Method>& methods, uint64_t seed);
+
+  Step claim() override;
+  bool finished() const override;
+
+ private:
+  // One method. `busy` while a step of it runs; the other members are then that step's alone, but for the queue.
+  struct Lane {
+    Method method;
+    WallClock clock;
+    std::unique_ptr<Estimation> estimation;
+    std::deque<std::shared_ptr<const Chunk>> queue;
+    std::deque<Belief> beliefs;  // closed loop: not yet old enough to steer, and the one that steers
+    Time consumed{0};
+    bool busy = false, written = false;
+  };
+
+  Step open();
+  Step sense();
+  Step estimate(Lane& lane);
+  Step write(Lane& lane);
+  bool may_sense() const;
+  Time belief_due() const;
+  std::optional<Belief> belief();
+  FinishedRun write_result(Lane& lane);
+
+  const RunContext& context_;
+  uint64_t seed_;
+  WallClock sensing_clock_;
+  int64_t start_ns_ = 0;
+  std::unique_ptr<Sensing> sensing_;
+  bool opening_ = false, sensing_busy_ = false;
+  std::vector<std::unique_ptr<Lane>> lanes_;
+};
+
+}  // namespace vsslam
