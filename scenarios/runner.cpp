@@ -47,7 +47,6 @@ RunContext Runner::Impl::context(Progress& progress, ProgressState& state) {
           .on_finished =
               [this, &progress, &state](FinishedRun run) {
                 ++state.finished_runs;
-                link_latest(options.out, run.folder);
                 if (!run.failure.empty()) progress.note(run.failure);
                 finished.push_back(std::move(run));
               },
@@ -58,9 +57,9 @@ RunContext Runner::Impl::context(Progress& progress, ProgressState& state) {
                 progress.update(state);
               },
           .on_expected =
-              [&state, seeds = scenario.seeds.size()](double expected_s) {
-                // Seeds that have not begun yet will take as long.
-                if (state.expected_s == 0) state.expected_s = expected_s * static_cast<double>(seeds);
+              [&state](double expected_s) {
+                // Runs that have not begun yet will take as long.
+                if (state.expected_s == 0) state.expected_s = expected_s * state.runs;
               }};
 }
 
@@ -80,7 +79,16 @@ void Runner::run(const std::atomic<bool>& stop, Progress& progress) {
   ProgressState state;
   state.runs = static_cast<int>(impl_->methods.size() * impl_->scenario.seeds.size());
   const RunContext context = impl_->context(progress, state);
-  run_pipelines(impl_->pipelines(context), impl_->options.threads, stop);
+  const auto link = [this] {
+    if (!impl_->finished.empty()) link_latest(impl_->options.out, finished().back().folder);
+  };
+  try {
+    run_pipelines(impl_->pipelines(context), impl_->options.threads, stop);
+  } catch (...) {
+    link();
+    throw;
+  }
+  link();
 }
 
 std::vector<FinishedRun> Runner::finished() const {

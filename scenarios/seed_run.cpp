@@ -56,7 +56,7 @@ Step SeedRun::open() {
               [this, made] {
                 sensing_ = std::move(*made);
                 opening_ = false;
-                context_.on_expected(sensing_->expected_duration_s() * static_cast<double>(lanes_.size()));
+                context_.on_expected(sensing_->expected_duration_s());
               }};
 }
 

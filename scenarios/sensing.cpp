@@ -17,21 +17,17 @@ Sensing::Sensing(const Scenario& scenario, const World& world, uint64_t seed, St
       clock_(clock),
       simulation_(world, scenario.robot, scenario.drive),
       rig_(world, scenario.rig, scenario.events.sensors, seed),
-      objects_(world, scenario.events.objects),
       T_lidar_base_(scenario.rig.mounts.lidar.T_base_sensor().inverse()) {
   for (const WheelSlipEvent& slip : scenario.events.wheel_slip)
-    simulation_.scale_friction(Time::from_seconds(slip.t_s), Time::from_seconds(slip.t_s + slip.duration_s),
+    simulation_.scale_friction(Time::from_seconds(slip.at_s), Time::from_seconds(slip.at_s + slip.duration_s),
                                slip.left_friction, slip.right_friction);
-  change_objects(objects_.initial());
 }
 
 Chunk Sensing::next(const std::optional<Belief>& belief) {
-  change_objects(objects_.take(until_));
   if (belief) simulation_.set_believed_pose(belief->stamp, belief->T_world_base);
 
   Chunk chunk;
   chunk.until = until_ + kChunk;
-  if (const auto change = objects_.next()) chunk.until = std::min(chunk.until, *change);
   {
     StageTimer timer(clock_, "simulate");
     Time ahead = chunk.until;
@@ -51,14 +47,6 @@ Chunk Sensing::next(const std::optional<Belief>& belief) {
 
 double Sensing::expected_duration_s() const {
   return std::min(simulation_.expected_duration_s(), scenario_.max_duration_s);
-}
-
-void Sensing::change_objects(const std::vector<ObjectState>& states) {
-  for (const ObjectState& state : states) {
-    simulation_.set_object_pose(state.object, state.T_world_object, state.present);
-    rig_.raycaster().set_object_pose(state.object, state.T_world_object, state.present);
-  }
-  if (!states.empty()) rig_.raycaster().commit();
 }
 
 void Sensing::add_truth(Chunk& chunk) const {

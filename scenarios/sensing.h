@@ -52,14 +52,12 @@ class Sensing {
   const Raycaster& raycaster() { return rig_.raycaster(); }
 
  private:
-  void change_objects(const std::vector<ObjectState>& states);
   void add_truth(Chunk& chunk) const;
 
   const Scenario& scenario_;
   StageClock* clock_;
   Simulation simulation_;
   Rig rig_;
-  ObjectTimeline objects_;
   SE3 T_lidar_base_;
   Time until_{0};
   bool ended_ = false;

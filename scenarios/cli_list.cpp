@@ -1,0 +1,53 @@
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "core/errors.h"
+#include "scenarios/cli.h"
+#include "scenarios/library_files.h"
+#include "scenarios/scenario.h"
+
+namespace vsslam {
+
+namespace {
+
+std::string description_of(const std::string& scenario) {
+  try {
+    return load_scenario(scenario).description;
+  } catch (const InputError& e) {
+    return e.what();
+  }
+}
+
+int list(const Console& console) {
+  nlohmann::ordered_json json = {{"scenarios", nlohmann::ordered_json::array()}};
+  std::string text = "scenarios\n";
+  for (const std::string& name : library_names("scenarios")) {
+    const std::string description = description_of(name);
+    text += fmt::format("  {:<18} {}\n", name, description);
+    json["scenarios"].push_back({{"name", name}, {"description", description}});
+  }
+  for (const char* kind : {"worlds", "rigs"}) {
+    json[kind] = library_names(kind);
+    text += fmt::format("{}\n", kind);
+    for (const std::string& name : library_names(kind)) text += fmt::format("  {}\n", name);
+  }
+  text += "methods\n";
+  for (const Method method : all_methods()) {
+    json["methods"].push_back(method_name(method));
+    text += fmt::format("  {}\n", method_name(method));
+  }
+  console.out << (console.json ? json.dump(2) + "\n" : text);
+  return kDone;
+}
+
+}  // namespace
+
+void add_list_command(CLI::App& app, Console& console, Command& command) {
+  CLI::App* sub = app.add_subcommand("list", "scenarios, worlds, rigs and methods");
+  add_common_options(*sub, console);
+  sub->callback([&console, &command] { command = [&console] { return list(console); }; });
+}
+
+}  // namespace vsslam

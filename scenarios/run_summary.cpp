@@ -1,0 +1,88 @@
+#include "scenarios/run_summary.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+namespace vsslam {
+
+namespace {
+
+using Row = std::vector<std::string>;
+
+std::string number(const std::optional<double>& value, int decimals) {
+  return value ? fmt::format("{:.{}f}", *value, decimals) : "-";
+}
+
+Row header() {
+  return {"method", "seed", "time s", "path m", "ATE m", "max m", "RPE %", "RPE deg", "end m", "odometry ATE m",
+          "map m", "loops true", "false", "recall", "stored", "x real time"};
+}
+
+Row row(const FinishedRun& run) {
+  const Metrics& m = run.metrics;
+  return {m.method,
+          fmt::format("{}", m.seed),
+          number(m.duration_s, 1),
+          number(m.path_length_m, 1),
+          number(m.ate_rmse_m, 3),
+          number(m.ate_max_m, 3),
+          number(m.rpe_10m_percent, 2),
+          number(m.rpe_10m_deg, 2),
+          number(m.end_error_m, 3),
+          number(m.odometry_ate_rmse_m, 3),
+          number(m.map_error_mean_m, 3),
+          fmt::format("{}", m.loops.true_loops),
+          fmt::format("{}", m.loops.false_loops),
+          number(m.loops.recall, 2),
+          fmt::format("{}", m.descriptors.count),
+          number(run.real_time_factor, 1)};
+}
+
+std::string table(const std::vector<Row>& rows) {
+  std::vector<size_t> widths(rows.front().size(), 0);
+  for (const Row& cells : rows)
+    for (size_t i = 0; i < cells.size(); ++i) widths[i] = std::max(widths[i], cells[i].size());
+  std::string text;
+  for (const Row& cells : rows) {
+    text += fmt::format("{:<{}}", cells[0], widths[0]);
+    for (size_t i = 1; i < cells.size(); ++i) text += fmt::format("  {:>{}}", cells[i], widths[i]);
+    text += '\n';
+  }
+  return text;
+}
+
+std::string expectations_of(const FinishedRun& run) {
+  std::string text;
+  for (const ExpectationResult& e : run.metrics.expectations)
+    text += fmt::format("{}  {} = {} ({})  {} seed {}\n", e.pass ? "PASS" : "FAIL", e.metric,
+                        e.value ? fmt::format("{:.6g}", *e.value) : "none", e.bound.text(), run.metrics.method,
+                        run.seed);
+  if (!run.failure.empty())
+    text += fmt::format("FAIL  {}  {} seed {}\n", run.failure, run.metrics.method, run.seed);
+  return text;
+}
+
+}  // namespace
+
+std::string summary_text(std::span<const FinishedRun> runs) {
+  if (runs.empty()) return "";
+  std::vector<Row> rows = {header()};
+  for (const FinishedRun& run : runs) rows.push_back(row(run));
+  std::string text = table(rows);
+  for (const FinishedRun& run : runs) text += expectations_of(run);
+  for (const FinishedRun& run : runs) text += fmt::format("report: {}\n", (run.folder / "report.html").string());
+  return text;
+}
+
+std::string summary_json(std::span<const FinishedRun> runs) {
+  std::string text = "[";
+  for (const FinishedRun& run : runs) {
+    if (text.size() > 1) text += ",";
+    text += "\n" + run.metrics.json();
+  }
+  return text + "]\n";
+}
+
+}  // namespace vsslam

@@ -1,0 +1,17 @@
+// What a run tells at its end.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "scenarios/runner.h"
+
+namespace vsslam {
+
+/// A table of the main figures, the expectations with PASS or FAIL, and where the reports are.
+std::string summary_text(std::span<const FinishedRun> runs);
+
+/// A JSON list of the metrics.json that were written.
+std::string summary_json(std::span<const FinishedRun> runs);
+
+}  // namespace vsslam
