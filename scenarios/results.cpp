@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <bit>
 #include <nlohmann/json.hpp>
 
 #include "core/files.h"
@@ -17,20 +16,12 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Bytes of the paper's index: a vector of n four-byte ids whose capacity doubles.
-int64_t index_bytes(size_t count) {
-  constexpr int64_t kVector = 24, kId = 4;
-  return count == 0 ? 0 : kVector + kId * static_cast<int64_t>(std::bit_ceil(count));
-}
-
 Metrics::Descriptors score_descriptors(const Slam& slam) {
-  const std::vector<StoredDescriptor> stored = slam.loop_closer().stored();
-  Metrics::Descriptors d;
-  d.count = static_cast<int64_t>(stored.size());
-  d.index_bytes = index_bytes(stored.size());
-  for (const StoredDescriptor& descriptor : stored) d.descriptor_bytes += static_cast<int64_t>(descriptor.bytes);
-  d.database_bytes = d.descriptor_bytes;
-  return d;
+  const DatabaseSize size = slam.loop_closer().database_size(slam.key_scans());
+  return {.count = size.count,
+          .index_bytes = static_cast<int64_t>(size.index_bytes),
+          .descriptor_bytes = static_cast<int64_t>(size.descriptor_bytes),
+          .database_bytes = static_cast<int64_t>(size.database_bytes)};
 }
 
 Metrics::Degeneracy score_degeneracy_of(const Estimation& estimation) {

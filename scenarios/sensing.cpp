@@ -23,7 +23,20 @@ Sensing::Sensing(const Scenario& scenario, const World& world, uint64_t seed, St
                                slip.left_friction, slip.right_friction);
 }
 
+// The raycaster's objects are moved by the rig, the solid ones here.
+void Sensing::place_objects() {
+  const MovingObjects& moving = rig_.moving_objects();
+  placed_.resize(moving.objects().size());
+  for (size_t i = 0; i < placed_.size(); ++i) {
+    const ObjectState state = moving.state(moving.objects()[i], until_);
+    if (placed_[i] == state) continue;
+    placed_[i] = state;
+    simulation_.set_object_pose(moving.objects()[i], state.T_world_object, state.present);
+  }
+}
+
 Chunk Sensing::next(const std::optional<Belief>& belief) {
+  place_objects();
   if (belief) simulation_.set_believed_pose(belief->stamp, belief->T_world_base);
 
   Chunk chunk;

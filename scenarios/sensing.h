@@ -52,6 +52,7 @@ class Sensing {
   const Raycaster& raycaster() { return rig_.raycaster(); }
 
  private:
+  void place_objects();
   void add_truth(Chunk& chunk) const;
 
   const Scenario& scenario_;
@@ -59,6 +60,7 @@ class Sensing {
   Simulation simulation_;
   Rig rig_;
   SE3 T_lidar_base_;
+  std::vector<std::optional<ObjectState>> placed_;  // of the rig's moving objects, as the dynamics have them
   Time until_{0};
   bool ended_ = false;
 };
