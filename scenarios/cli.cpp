@@ -1,9 +1,9 @@
 #include "scenarios/cli.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
 #include <exception>
@@ -33,7 +33,8 @@ std::vector<std::string> option_names(const CLI::App& command) {
 
 std::string suggestion(const std::string& word, const std::vector<std::string>& words) {
   const std::string near = nearest(word, words);
-  return near.empty() ? fmt::format("one of: {}", fmt::join(words, ", ")) : fmt::format("did you mean {}?", near);
+  return near.empty() ? fmt::format("one of: {}", fmt::join(words, ", "))
+                      : fmt::format("did you mean {}?", near);
 }
 
 // Mistyped commands and options, which CLI11 reports without a hint.
@@ -52,7 +53,8 @@ void check_words(const CLI::App& app, const std::vector<std::string>& arguments)
   }
 }
 
-int parse_and_run(CLI::App& app, const std::vector<std::string>& arguments, Console& console, Command& command) {
+int parse_and_run(CLI::App& app, const std::vector<std::string>& arguments, Console& console,
+                  Command& command) {
   check_words(app, arguments);
   try {
     app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
@@ -93,7 +95,9 @@ uint64_t parse_seed(const std::string& text, const std::string& whole) {
 }  // namespace
 
 void add_common_options(CLI::App& command, Console& console) {
-  command.add_option("--threads", console.threads, "threads to use (default: all cores; results do not depend on it)")
+  command
+      .add_option("--threads", console.threads,
+                  "threads to use (default: all cores; results do not depend on it)")
       ->check(CLI::Range(1, 1024));
   command.add_flag("--json", console.json, "print JSON on standard output, all else on standard error");
   command.add_flag("--quiet", console.quiet, "no progress");
@@ -124,14 +128,16 @@ std::vector<uint64_t> parse_seeds(const std::string& text) {
   return seeds;
 }
 
-int run_cli(const std::vector<std::string>& arguments, std::ostream& out, std::ostream& err, bool err_is_terminal) {
+int run_cli(const std::vector<std::string>& arguments, std::ostream& out, std::ostream& err,
+            bool err_is_terminal) {
   return guarded(
       [&] {
         Console console{.out = out, .err = err, .err_is_terminal = err_is_terminal};
         Command command;
-        CLI::App app("VS-SLAM Testbed: simulate a Scout in a corridor, run SLAM in the loop, score it against exact "
-                     "truth.\nExit codes: 0 done as expected, 1 an expectation failed, 2 bad input, 3 stopped.",
-                     "vsslam");
+        CLI::App app(
+            "VS-SLAM Testbed: simulate a Scout in a corridor, run SLAM in the loop, score it against exact "
+            "truth.\nExit codes: 0 done as expected, 1 an expectation failed, 2 bad input, 3 stopped.",
+            "vsslam");
         app.require_subcommand(1);
         app.set_help_all_flag("--help-all", "help of every command");
         add_run_command(app, console, command);

@@ -1,6 +1,6 @@
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -23,19 +23,22 @@ Alignment parse_alignment(const std::string& name) {
 }
 
 std::string text_of(const TrajectoryScore& s) {
-  const auto figure = [](const std::optional<double>& value) { return value ? fmt::format("{:.6f}", *value) : "-"; };
+  const auto figure = [](const std::optional<double>& value) {
+    return value ? fmt::format("{:.6f}", *value) : "-";
+  };
   return fmt::format(
-      "ATE RMSE {:.6f} m  mean {:.6f} m  max {:.6f} m\nRPE over 10 m {} %  {} deg\nend error {:.6f} m  path {:.3f} m  "
+      "ATE RMSE {:.6f} m  mean {:.6f} m  max {:.6f} m\nRPE over 10 m {} %  {} deg\nend error {:.6f} m  path "
+      "{:.3f} m  "
       "{} pairs\n",
-      s.ate_rmse_m, s.ate_mean_m, s.ate_max_m, figure(s.rpe_10m_percent), figure(s.rpe_10m_deg), s.end_error_m,
-      s.path_length_m, s.pairs);
+      s.ate_rmse_m, s.ate_mean_m, s.ate_max_m, figure(s.rpe_10m_percent), figure(s.rpe_10m_deg),
+      s.end_error_m, s.path_length_m, s.pairs);
 }
 
 int evaluate(const EvaluateArguments& arguments, const Console& console) {
   ScoreOptions options;
   options.alignment = parse_alignment(arguments.alignment);
-  const TrajectoryScore s = score(read_trajectory(arguments.estimate), read_trajectory(arguments.truth), options,
-                                  {arguments.estimate, arguments.truth});
+  const TrajectoryScore s = score(read_trajectory(arguments.estimate), read_trajectory(arguments.truth),
+                                  options, {arguments.estimate, arguments.truth});
   console.text() << text_of(s);
   if (!console.json) return kDone;
   const auto number = [](const std::optional<double>& value) {
@@ -54,7 +57,8 @@ int evaluate(const EvaluateArguments& arguments, const Console& console) {
 }  // namespace
 
 void add_evaluate_command(CLI::App& app, Console& console, Command& command) {
-  CLI::App* sub = app.add_subcommand("evaluate", "score a trajectory file against another (ATE, RPE; TUM or KITTI)");
+  CLI::App* sub =
+      app.add_subcommand("evaluate", "score a trajectory file against another (ATE, RPE; TUM or KITTI)");
   const auto arguments = std::make_shared<EvaluateArguments>();
   sub->add_option("estimate", arguments->estimate, "the estimated trajectory")->required();
   sub->add_option("truth", arguments->truth, "the true trajectory")->required();

@@ -1,6 +1,6 @@
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -19,9 +19,10 @@ int optimize(const OptimizeArguments& arguments, const Console& console) {
   PoseGraph graph = PoseGraph::read_g2o(arguments.file);
   const PoseGraph::Summary s = graph.optimize({});
   if (!arguments.out.empty()) graph.write_g2o(arguments.out);
-  console.text() << fmt::format("{} poses, {} edges\ninitial cost {:.9g}\nfinal cost   {:.9g}  ({} iterations, {})\n",
-                                graph.ids().size(), graph.edges().size(), s.initial_cost, s.final_cost, s.iterations,
-                                s.converged ? "converged" : "not converged");
+  console.text() << fmt::format(
+      "{} poses, {} edges\ninitial cost {:.9g}\nfinal cost   {:.9g}  ({} iterations, {})\n",
+      graph.ids().size(), graph.edges().size(), s.initial_cost, s.final_cost, s.iterations,
+      s.converged ? "converged" : "not converged");
   if (console.json) {
     const nlohmann::ordered_json json = {{"poses", graph.ids().size()},
                                          {"edges", graph.edges().size()},

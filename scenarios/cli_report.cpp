@@ -1,5 +1,4 @@
 #include <CLI/CLI.hpp>
-
 #include <memory>
 
 #include "core/errors.h"
@@ -35,7 +34,8 @@ int report(const ReportArguments& arguments, const Console& console) {
 }  // namespace
 
 void add_report_command(CLI::App& app, Console& console, Command& command) {
-  CLI::App* sub = app.add_subcommand("report", "rebuild the report of a result folder; several: side by side as well");
+  CLI::App* sub =
+      app.add_subcommand("report", "rebuild the report of a result folder; several: side by side as well");
   const auto arguments = std::make_shared<ReportArguments>();
   sub->add_option("folders", arguments->folders, "result folders")->required();
   sub->add_option("--out", arguments->out, "the page that compares (default: out/comparison.html)");

@@ -1,7 +1,7 @@
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "core/errors.h"
@@ -57,7 +57,8 @@ int run(const RunArguments& arguments, const Console& console) {
   const std::vector<FinishedRun> runs = runner.finished();
   console.text() << summary_text(runs);
   if (console.json) console.out << summary_json(runs);
-  const bool good = std::all_of(runs.begin(), runs.end(), [](const FinishedRun& r) { return r.as_expected(); });
+  const bool good =
+      std::all_of(runs.begin(), runs.end(), [](const FinishedRun& r) { return r.as_expected(); });
   return good ? kDone : kExpectationFailed;
 }
 
@@ -66,15 +67,19 @@ int run(const RunArguments& arguments, const Console& console) {
 void add_run_command(CLI::App& app, Console& console, Command& command) {
   CLI::App* sub = app.add_subcommand("run", "simulate, SLAM in the loop, score, report");
   const auto arguments = std::make_shared<RunArguments>();
-  sub->add_option("scenario", arguments->scenario, "a name from the library (see list), or a path")->required();
+  sub->add_option("scenario", arguments->scenario, "a name from the library (see list), or a path")
+      ->required();
   sub->add_option("--method", arguments->methods, "names with commas between, or all");
   sub->add_option("--seeds", arguments->seeds, "of the sensors' noise: 1-5 or 1,3");
-  sub->add_option("--set", arguments->settings, "key=value; changes a setting of the scenario; may be repeated")
+  sub->add_option("--set", arguments->settings,
+                  "key=value; changes a setting of the scenario; may be repeated")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   sub->add_option("--out", console.out_folder, "folder of the results (default: out/runs)");
   add_common_options(*sub, console);
-  sub->callback([&console, &command, arguments] { command = [&console, arguments] { return run(*arguments, console); }; });
+  sub->callback([&console, &command, arguments] {
+    command = [&console, arguments] { return run(*arguments, console); };
+  });
 }
 
 }  // namespace vsslam

@@ -1,14 +1,14 @@
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
-#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "core/errors.h"
 #include "scenarios/cli.h"
 #include "scenarios/library_files.h"
+#include "worlds/describe.h"
 #include "worlds/gltf.h"
 #include "worlds/world_source.h"
 
@@ -26,14 +26,17 @@ struct WorldArguments {
   bool info = false;
 };
 
-bool is_gltf(const fs::path& path) { return path.extension() == ".glb" || path.extension() == ".gltf"; }
+bool is_gltf(const fs::path& path) {
+  return path.extension() == ".glb" || path.extension() == ".gltf";
+}
 
 // A library world, a generator's name, a .yaml of a world, or a glTF file.
 World load_world(const WorldArguments& arguments) {
   std::vector<Override> overrides;
   for (const std::string& setting : arguments.settings) overrides.push_back(Override::parse(setting));
   if (is_gltf(arguments.world)) {
-    if (!overrides.empty()) throw InputError("--set: a glTF file has no settings; name a world of the library");
+    if (!overrides.empty())
+      throw InputError("--set: a glTF file has no settings; name a world of the library");
     return read_gltf(find_file("worlds", arguments.world));
   }
   WorldSource source;
@@ -47,27 +50,16 @@ World load_world(const WorldArguments& arguments) {
   return make_world(source);
 }
 
-Json extent(const World& world) {
-  Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
-  for (const Object& object : world.objects)
-    for (const Primitive& primitive : world.meshes[static_cast<size_t>(object.mesh)].primitives)
-      for (const Vec3f& p : primitive.positions) {
-        const Vec3 p_world = object.T_world_object * p.cast<double>();
-        low = low.cwiseMin(p_world);
-        high = high.cwiseMax(p_world);
-      }
-  if (!(low.x() <= high.x())) return nullptr;
-  return {{"low_m", {low.x(), low.y(), low.z()}}, {"high_m", {high.x(), high.y(), high.z()}}};
-}
-
-Json describe(const World& world) {
+Json facts(const World& world) {
+  const Bounds box = bounds(world);
   Json routes = Json::array();
   for (const Route& route : world.routes) {
     double length_m = 0;
     const size_t count = route.points_world.size();
     for (size_t i = 1; i < count + (route.closed ? 1 : 0); ++i)
       length_m += (route.points_world[i % count] - route.points_world[i - 1]).norm();
-    routes.push_back({{"name", route.name}, {"closed", route.closed}, {"points", count}, {"length_m", length_m}});
+    routes.push_back(
+        {{"name", route.name}, {"closed", route.closed}, {"points", count}, {"length_m", length_m}});
   }
   return {{"name", world.name},
           {"triangles", world.triangle_count()},
@@ -76,26 +68,10 @@ Json describe(const World& world) {
           {"materials", world.materials.size()},
           {"textures", world.textures.size()},
           {"lights", world.lights.size()},
-          {"extent", extent(world)},
+          {"extent",
+           {{"low_m", {box.low_world.x(), box.low_world.y(), box.low_world.z()}},
+            {"high_m", {box.high_world.x(), box.high_world.y(), box.high_world.z()}}}},
           {"routes", routes}};
-}
-
-std::string as_text(const Json& info) {
-  std::string text;
-  for (const auto& [key, value] : info.items()) {
-    if (key == "routes") {
-      for (const Json& route : value)
-        text += fmt::format("{:<10} {} ({}, {:.2f} m)\n", "route", route["name"].get<std::string>(),
-                            route["closed"].get<bool>() ? "closed" : "open", route["length_m"].get<double>());
-    } else if (key == "extent" && !value.is_null()) {
-      const auto low = value["low_m"].get<std::vector<double>>(), high = value["high_m"].get<std::vector<double>>();
-      text += fmt::format("{:<10} {:.2f} x {:.2f} x {:.2f} m\n", "extent", high[0] - low[0], high[1] - low[1],
-                          high[2] - low[2]);
-    } else {
-      text += fmt::format("{:<10} {}\n", key, value.is_string() ? value.get<std::string>() : value.dump());
-    }
-  }
-  return text;
 }
 
 int show_world(const WorldArguments& arguments, const Console& console) {
@@ -106,11 +82,10 @@ int show_world(const WorldArguments& arguments, const Console& console) {
     write_glb(world, arguments.glb);
     console.err << "wrote " << arguments.glb << '\n';
   }
-  const Json info = describe(world);
   if (console.json) {
-    console.out << info.dump(2) << '\n';
+    console.out << facts(world).dump(2) << '\n';
   } else if (arguments.info || arguments.glb.empty()) {
-    console.out << as_text(info);
+    console.out << describe(world);
   }
   return kDone;
 }
@@ -120,9 +95,11 @@ int show_world(const WorldArguments& arguments, const Console& console) {
 void add_world_command(CLI::App& app, Console& console, Command& command) {
   CLI::App* sub = app.add_subcommand("world", "generate a world and write it as .glb, or describe one");
   const auto arguments = std::make_shared<WorldArguments>();
-  sub->add_option("world", arguments->world, "a name from the library, corridor, room, or a .yaml, .glb or .gltf file")
+  sub->add_option("world", arguments->world,
+                  "a name from the library, corridor, room, or a .yaml, .glb or .gltf file")
       ->required();
-  sub->add_option("--set", arguments->settings, "key=value; changes a setting of the generator; may be repeated")
+  sub->add_option("--set", arguments->settings,
+                  "key=value; changes a setting of the generator; may be repeated")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   sub->add_option("--out", arguments->glb, "the .glb file to write");

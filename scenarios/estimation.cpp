@@ -36,8 +36,8 @@ Belief Estimation::add(const LidarMeasurement& measurement, const ScanTruth& tru
   truth_world_base_.push_back({measurement.scan.stamp, truth.T_world_base});
   degeneracy_truth_.push_back(truth.degeneracy);
   if (report.key >= 0)
-    key_scan_truth_.push_back(vsslam::key_scan_truth(report.key, measurement, truth.T_world_base,
-                                                     LoopTruthOptions{}.max_points));
+    key_scan_truth_.push_back(
+        vsslam::key_scan_truth(report.key, measurement, truth.T_world_base, LoopTruthOptions{}.max_points));
   return {measurement.scan.end, report.stamp, T_world_map_ * report.T_map_base};
 }
 

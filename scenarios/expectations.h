@@ -18,16 +18,16 @@ struct Bound {
 };
 
 /// Metrics by their names in metrics.json; those inside a group with a dot: loops.false.
-using Bounds = std::map<std::string, Bound>;
+using MetricBounds = std::map<std::string, Bound>;
 
 /// The `expect` section: by method name, or "all". A method's own bound replaces that of "all".
-using Expectations = std::map<std::string, Bounds>;
+using Expectations = std::map<std::string, MetricBounds>;
 
 /// Adds the section `expect` with its checks.
 void expectation_fields(Fields& f, Expectations& expect);
 
 /// The bounds that apply to a method.
-Bounds bounds_for(const Expectations& expect, const std::string& method);
+MetricBounds bounds_for(const Expectations& expect, const std::string& method);
 
 /// Every metric that can be bounded.
 const std::vector<std::string>& metric_names();

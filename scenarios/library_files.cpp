@@ -19,7 +19,9 @@ fs::path library_folder(std::string_view kind) {
   return home_folder() / room / "library";
 }
 
-std::string singular(std::string_view kind) { return std::string(kind.substr(0, kind.size() - 1)); }
+std::string singular(std::string_view kind) {
+  return std::string(kind.substr(0, kind.size() - 1));
+}
 
 }  // namespace
 
@@ -42,7 +44,8 @@ fs::path library_file(std::string_view kind, std::string_view name) {
   if (std::binary_search(names.begin(), names.end(), name))
     return library_folder(kind) / fmt::format("{}.yaml", name);
   if (names.empty())
-    throw InputError(fmt::format("no {} \"{}\": {} is empty", singular(kind), name, library_folder(kind).string()));
+    throw InputError(
+        fmt::format("no {} \"{}\": {} is empty", singular(kind), name, library_folder(kind).string()));
   const std::string near = nearest(name, names);
   throw InputError(fmt::format("no {} \"{}\" ({})", singular(kind), name,
                                near.empty() ? fmt::format("one of: {}", fmt::join(names, ", "))

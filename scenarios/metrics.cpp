@@ -71,9 +71,11 @@ std::string Metrics::json() const {
   return json.dump(2) + "\n";
 }
 
-std::optional<double> Metrics::value(const std::string& metric) const { return find(to_json(*this), metric); }
+std::optional<double> Metrics::value(const std::string& metric) const {
+  return find(to_json(*this), metric);
+}
 
-void Metrics::compare(const Bounds& bounds) {
+void Metrics::compare(const MetricBounds& bounds) {
   expectations.clear();
   for (const auto& [metric, bound] : bounds) {
     const std::optional<double> found = value(metric);

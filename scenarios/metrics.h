@@ -37,7 +37,7 @@ struct Metrics {
   /// A figure by its name, groups with a dot: "loops.false".
   std::optional<double> value(const std::string& metric) const;
   /// Fills `expectations`.
-  void compare(const Bounds& bounds);
+  void compare(const MetricBounds& bounds);
 };
 
 }  // namespace vsslam

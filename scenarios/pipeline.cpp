@@ -80,7 +80,8 @@ class Schedule {
 
 }  // namespace
 
-void run_pipelines(std::vector<std::unique_ptr<Pipeline>> pipelines, int threads, const std::atomic<bool>& stop) {
+void run_pipelines(std::vector<std::unique_ptr<Pipeline>> pipelines, int threads,
+                   const std::atomic<bool>& stop) {
   Schedule(std::move(pipelines), threads, stop).run();
 }
 

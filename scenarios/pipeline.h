@@ -28,6 +28,7 @@ class Pipeline {
 /// Runs all pipelines to their end, at most `threads` of them open at a time, earlier ones first. A finished
 /// pipeline is destroyed. One thread: everything runs in the caller's. The first exception of a step ends the
 /// run and is rethrown; Interrupted is thrown once `stop` is set. Running steps are always waited for.
-void run_pipelines(std::vector<std::unique_ptr<Pipeline>> pipelines, int threads, const std::atomic<bool>& stop);
+void run_pipelines(std::vector<std::unique_ptr<Pipeline>> pipelines, int threads,
+                   const std::atomic<bool>& stop);
 
 }  // namespace vsslam

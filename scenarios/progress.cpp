@@ -25,10 +25,13 @@ std::string span_text(double seconds) {
 Progress::Progress(Style style, std::ostream& out, StageClock& clock, std::string title)
     : style_(style), out_(out), clock_(clock), title_(std::move(title)), start_ns_(clock.now_ns()) {}
 
-Progress::~Progress() { clear_bar(); }
+Progress::~Progress() {
+  clear_bar();
+}
 
 std::string Progress::describe(const ProgressState& state, double elapsed_s) {
-  std::string text = fmt::format("{:3.0f} %  {:.0f} of {:.0f} s", 100 * share(state), state.done_s, state.expected_s);
+  std::string text =
+      fmt::format("{:3.0f} %  {:.0f} of {:.0f} s", 100 * share(state), state.done_s, state.expected_s);
   if (elapsed_s <= 0 || state.done_s <= 0) return text;
   text += fmt::format("  {:.0f} scans/s  {:.1f} x real time", static_cast<double>(state.scans) / elapsed_s,
                       state.done_s / elapsed_s);
@@ -62,7 +65,8 @@ void Progress::note(const std::string& line) {
 void Progress::show_bar(const ProgressState& state, double elapsed_s) {
   constexpr int kWidth = 24;
   const int full = static_cast<int>(share(state) * kWidth);
-  out_ << fmt::format("\r\x1b[K{} [{:=<{}}{: <{}}] {}", title_, "", full, "", kWidth - full, describe(state, elapsed_s))
+  out_ << fmt::format("\r\x1b[K{} [{:=<{}}{: <{}}] {}", title_, "", full, "", kWidth - full,
+                      describe(state, elapsed_s))
        << std::flush;
   bar_shown_ = true;
 }

@@ -103,7 +103,8 @@ void write_results(const fs::path& folder, const RunRecord& record, const Scored
 void write_timing(const fs::path& folder, const Timing& timing, const WallClock& clock) {
   nlohmann::ordered_json stages = nlohmann::ordered_json::object();
   for (const WallClock::StageTimes& s : clock.summary())
-    stages[s.stage] = {{"median_ms", s.median_ms}, {"p99_ms", s.p99_ms}, {"count", s.count}, {"total_s", s.total_s}};
+    stages[s.stage] = {
+        {"median_ms", s.median_ms}, {"p99_ms", s.p99_ms}, {"count", s.count}, {"total_s", s.total_s}};
   const nlohmann::ordered_json json = {{"real_time_factor", timing.real_time_factor},
                                        {"wall_s", timing.wall_s},
                                        {"peak_rss_mib", peak_rss_mib()},

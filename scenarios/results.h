@@ -39,7 +39,7 @@ struct Timing {
 void write_timing(const std::filesystem::path& folder, const Timing& timing, const WallClock& clock);
 
 /// <out>/<scenario>/<method>/seed_<n>
-std::filesystem::path result_path(const std::filesystem::path& out, const std::string& scenario, Method method,
-                                  uint64_t seed);
+std::filesystem::path result_path(const std::filesystem::path& out, const std::string& scenario,
+                                  Method method, uint64_t seed);
 
 }  // namespace vsslam

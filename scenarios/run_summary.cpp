@@ -16,8 +16,8 @@ std::string number(const std::optional<double>& value, int decimals) {
 }
 
 Row header() {
-  return {"method", "seed", "time s", "path m", "ATE m", "max m", "RPE %", "RPE deg", "end m", "odometry ATE m",
-          "map m", "loops true", "false", "recall", "stored", "x real time"};
+  return {"method", "seed",           "time s", "path m",     "ATE m", "max m",  "RPE %",  "RPE deg",
+          "end m",  "odometry ATE m", "map m",  "loops true", "false", "recall", "stored", "x real time"};
 }
 
 Row row(const FinishedRun& run) {
@@ -57,8 +57,8 @@ std::string expectations_of(const FinishedRun& run) {
   std::string text;
   for (const ExpectationResult& e : run.metrics.expectations)
     text += fmt::format("{}  {} = {} ({})  {} seed {}\n", e.pass ? "PASS" : "FAIL", e.metric,
-                        e.value ? fmt::format("{:.6g}", *e.value) : "none", e.bound.text(), run.metrics.method,
-                        run.seed);
+                        e.value ? fmt::format("{:.6g}", *e.value) : "none", e.bound.text(),
+                        run.metrics.method, run.seed);
   if (!run.failure.empty())
     text += fmt::format("FAIL  {}  {} seed {}\n", run.failure, run.metrics.method, run.seed);
   return text;
@@ -72,7 +72,8 @@ std::string summary_text(std::span<const FinishedRun> runs) {
   for (const FinishedRun& run : runs) rows.push_back(row(run));
   std::string text = table(rows);
   for (const FinishedRun& run : runs) text += expectations_of(run);
-  for (const FinishedRun& run : runs) text += fmt::format("report: {}\n", (run.folder / "report.html").string());
+  for (const FinishedRun& run : runs)
+    text += fmt::format("report: {}\n", (run.folder / "report.html").string());
   return text;
 }
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <mutex>
 
-#include "scenarios/result_folder.h"
+#include "scenarios/pending_folder.h"
 #include "scenarios/seed_run.h"
 
 namespace vsslam {
@@ -67,7 +67,8 @@ std::vector<std::unique_ptr<Pipeline>> Runner::Impl::pipelines(const RunContext&
   std::vector<std::unique_ptr<Pipeline>> runs;
   for (const uint64_t seed : scenario.seeds) {
     if (scenario.closed_loop) {
-      for (const Method method : methods) runs.push_back(std::make_unique<SeedRun>(context, std::vector{method}, seed));
+      for (const Method method : methods)
+        runs.push_back(std::make_unique<SeedRun>(context, std::vector{method}, seed));
     } else {
       runs.push_back(std::make_unique<SeedRun>(context, methods, seed));
     }

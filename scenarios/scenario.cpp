@@ -38,7 +38,8 @@ void Scenario::fields(Fields& f) {
   expectation_fields(f, expect);
   f.check(!methods.empty(), "methods", "at least one method");
   f.check(!seeds.empty(), "seeds", "at least one seed");
-  f.check(name.find('/') == std::string::npos && !name.starts_with('.'), "name", "a name that can be a folder's");
+  f.check(name.find('/') == std::string::npos && !name.starts_with('.'), "name",
+          "a name that can be a folder's");
 }
 
 Scenario load_scenario(const std::string& name_or_path, const std::vector<Override>& overrides) {

@@ -37,8 +37,8 @@ struct Scenario {
   EventsConfig events;
   std::vector<std::string> methods{"sc-lvi-sam"};  ///< names, or "all"
   SlamConfig slam;
-  std::vector<uint64_t> seeds{1};  ///< of the sensors' noise
-  bool closed_loop = false;        ///< the robot drives on the estimate instead of the truth
+  std::vector<uint64_t> seeds{1};      ///< of the sensors' noise
+  bool closed_loop = false;            ///< the robot drives on the estimate instead of the truth
   double closed_loop_latency_s = 0.2;  ///< from the end of a scan until its pose steers the robot
   double max_duration_s = 3600;        ///< simulated; the run ends there whatever the drive does
   double map_voxel_m = 0.1;            ///< of map.ply

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "scenarios/pending_folder.h"
 #include "scenarios/report/report.h"
-#include "scenarios/result_folder.h"
 #include "scenarios/results.h"
 
 namespace vsslam {
@@ -49,7 +49,8 @@ Step SeedRun::open() {
               [this, made] {
                 start_ns_ = sensing_clock_.now_ns();
                 for (const auto& lane : lanes_)
-                  lane->estimation = std::make_unique<Estimation>(context_.scenario, lane->method, &lane->clock);
+                  lane->estimation =
+                      std::make_unique<Estimation>(context_.scenario, lane->method, &lane->clock);
                 *made = std::make_unique<Sensing>(context_.scenario, context_.world, seed_, &sensing_clock_);
               },
           .commit =
@@ -102,7 +103,8 @@ Step SeedRun::estimate(Lane& lane) {
                 lane.queue.pop_front();
                 if (context_.scenario.closed_loop)
                   lane.beliefs.insert(lane.beliefs.end(), beliefs->begin(), beliefs->end());
-                context_.on_progress((chunk->until - lane.consumed).seconds(), static_cast<int64_t>(beliefs->size()));
+                context_.on_progress((chunk->until - lane.consumed).seconds(),
+                                     static_cast<int64_t>(beliefs->size()));
                 lane.consumed = chunk->until;
                 lane.busy = false;
               }};
@@ -128,10 +130,14 @@ FinishedRun SeedRun::write_result(Lane& lane) {
   if (sensing_->outcome() == DriveOutcome::stuck || sensing_->outcome() == DriveOutcome::collided)
     run.failure = sensing_->outcome_text();
 
-  const RunRecord record{.scenario = context_.scenario, .world = context_.world, .raycaster = sensing_->raycaster(),
-                         .surface = context_.surface(), .estimation = *lane.estimation, .seed = seed_,
+  const RunRecord record{.scenario = context_.scenario,
+                         .world = context_.world,
+                         .raycaster = sensing_->raycaster(),
+                         .surface = context_.surface(),
+                         .estimation = *lane.estimation,
+                         .seed = seed_,
                          .duration_s = sensing_->until().seconds()};
-  ResultFolder folder(run.folder);
+  PendingFolder folder(run.folder);
   {
     StageTimer timer(&lane.clock, "score_and_write");
     const ScoredRun scored = score_run(record);

@@ -22,10 +22,11 @@ struct RunContext {
   const Scenario& scenario;
   const World& world;
   RunOptions options;
-  std::function<const SurfaceDistance&()> surface;      ///< built by the first caller; thread-safe
-  std::function<void(FinishedRun)> on_finished;         ///< called under the schedule's lock
-  std::function<void(double s, int64_t scans)> on_progress;  ///< simulated time and scans estimated since the last call
-  std::function<void(double expected_s)> on_expected;   ///< simulated, of one run
+  std::function<const SurfaceDistance&()> surface;  ///< built by the first caller; thread-safe
+  std::function<void(FinishedRun)> on_finished;     ///< called under the schedule's lock
+  std::function<void(double s, int64_t scans)>
+      on_progress;  ///< simulated time and scans estimated since the last call
+  std::function<void(double expected_s)> on_expected;  ///< simulated, of one run
 };
 
 class SeedRun final : public Pipeline {

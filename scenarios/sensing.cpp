@@ -48,8 +48,9 @@ Chunk Sensing::next(const std::optional<Belief>& belief) {
   }
   {
     StageTimer timer(clock_, "sense");
-    rig_.advance(chunk.until, simulation_.trajectory(), [this](Time t) { return simulation_.wheels(t); },
-                 [&](Measurement&& m) { chunk.measurements.push_back(std::move(m)); });
+    rig_.advance(
+        chunk.until, simulation_.trajectory(), [this](Time t) { return simulation_.wheels(t); },
+        [&](Measurement&& m) { chunk.measurements.push_back(std::move(m)); });
   }
   simulation_.forget_before(std::min(rig_.needed_from(), chunk.until));
   add_truth(chunk);

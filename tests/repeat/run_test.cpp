@@ -15,7 +15,8 @@ namespace {
 namespace fs = std::filesystem;
 
 Scenario short_scenario(const std::string& setting = "map_voxel_m=0.2") {
-  return load_scenario("quick_room", {{"max_duration_s", "4"}, {"textures", "false"}, Override::parse(setting)});
+  return load_scenario("quick_room",
+                       {{"max_duration_s", "4"}, {"textures", "false"}, Override::parse(setting)});
 }
 
 fs::path run_into(const std::string& name, Scenario scenario, int threads) {

@@ -58,11 +58,18 @@ TEST(Cli, MistypedWordsGetAHint) {
 }
 
 TEST(Cli, BadInputIsCode2WithOneLine) {
-  for (const std::vector<std::string>& arguments :
-       {std::vector<std::string>{}, {"run"}, {"run", "no/such.yaml"}, {"run", "quick_room", "--threads", "0"},
-        {"run", "quick_room", "--seeds", "x"}, {"run", "quick_room", "--set", "nonsense"},
-        {"evaluate", "/nowhere/a.tum", "/nowhere/b.tum"}, {"optimize", "/nowhere.g2o"}, {"report", "/nowhere"},
-        {"world", "corridr"}, {"world", "room", "--out", "x.obj"}, {"list", "more"}}) {
+  for (const std::vector<std::string>& arguments : {std::vector<std::string>{},
+                                                    {"run"},
+                                                    {"run", "no/such.yaml"},
+                                                    {"run", "quick_room", "--threads", "0"},
+                                                    {"run", "quick_room", "--seeds", "x"},
+                                                    {"run", "quick_room", "--set", "nonsense"},
+                                                    {"evaluate", "/nowhere/a.tum", "/nowhere/b.tum"},
+                                                    {"optimize", "/nowhere.g2o"},
+                                                    {"report", "/nowhere"},
+                                                    {"world", "corridr"},
+                                                    {"world", "room", "--out", "x.obj"},
+                                                    {"list", "more"}}) {
     const Outcome outcome = call(arguments);
     EXPECT_EQ(outcome.code, kBadInput) << ::testing::PrintToString(arguments);
     EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
@@ -89,10 +96,11 @@ TEST(Cli, EvaluatePrintsTheContract) {
   std::string truth, estimate;
   for (int i = 0; i <= 30; ++i) {
     truth += std::to_string(i) + " " + std::to_string(i) + " 0 0 0 0 0 1\n";
-    estimate += std::to_string(i) + " " + std::to_string(i) + (i % 2 == 0 ? " 0.5" : " -0.5") + " 0 0 0 0 1\n";
+    estimate +=
+        std::to_string(i) + " " + std::to_string(i) + (i % 2 == 0 ? " 0.5" : " -0.5") + " 0 0 0 0 1\n";
   }
-  const Outcome outcome =
-      call({"evaluate", temporary("e.tum", estimate), temporary("t.tum", truth), "--align", "none", "--json"});
+  const Outcome outcome = call(
+      {"evaluate", temporary("e.tum", estimate), temporary("t.tum", truth), "--align", "none", "--json"});
   ASSERT_EQ(outcome.code, kDone) << outcome.err;
   const auto json = nlohmann::json::parse(outcome.out);
   EXPECT_NEAR(json["ate_rmse_m"].get<double>(), 0.5, 1e-12);
@@ -103,10 +111,10 @@ TEST(Cli, EvaluatePrintsTheContract) {
 }
 
 TEST(Cli, OptimizePrintsTheContract) {
-  const std::string file = temporary(
-      "g.g2o",
-      "VERTEX_SE3:QUAT 0 0 0 0 0 0 0 1\nVERTEX_SE3:QUAT 1 2 0 0 0 0 0 1\nFIX 0\n"
-      "EDGE_SE3:QUAT 0 1 1 0 0 0 0 0 1 4 0 0 0 0 0 4 0 0 0 0 4 0 0 0 1 0 0 1 0 1\n");
+  const std::string file =
+      temporary("g.g2o",
+                "VERTEX_SE3:QUAT 0 0 0 0 0 0 0 1\nVERTEX_SE3:QUAT 1 2 0 0 0 0 0 1\nFIX 0\n"
+                "EDGE_SE3:QUAT 0 1 1 0 0 0 0 0 1 4 0 0 0 0 0 4 0 0 0 0 4 0 0 0 1 0 0 1 0 1\n");
   const Outcome outcome = call({"optimize", file, "--json"});
   ASSERT_EQ(outcome.code, kDone) << outcome.err;
   const auto json = nlohmann::json::parse(outcome.out);
@@ -118,13 +126,15 @@ TEST(Cli, OptimizePrintsTheContract) {
 
 TEST(Cli, WorldIsWrittenAndDescribed) {
   const std::string glb = (std::filesystem::path(testing::TempDir()) / "room.glb").string();
-  const Outcome made = call({"world", "room", "--set", "length_m=9", "--set", "textures=false", "--out", glb});
+  const Outcome made =
+      call({"world", "room", "--set", "length_m=9", "--set", "textures=false", "--out", glb});
   ASSERT_EQ(made.code, kDone) << made.err;
   const Outcome described = call({"world", glb, "--info", "--json"});
   ASSERT_EQ(described.code, kDone) << described.err;
   const auto json = nlohmann::json::parse(described.out);
   EXPECT_GT(json["triangles"].get<int>(), 100);
-  const double length_m = json["extent"]["high_m"][0].get<double>() - json["extent"]["low_m"][0].get<double>();
+  const double length_m =
+      json["extent"]["high_m"][0].get<double>() - json["extent"]["low_m"][0].get<double>();
   EXPECT_NEAR(length_m, 9.0, 0.6);
 }
 
@@ -138,7 +148,8 @@ class FakeClock final : public StageClock {
 TEST(Progress, DescribesRateAndTimeLeft) {
   EXPECT_EQ(Progress::describe({.done_s = 30, .expected_s = 120, .scans = 300}, 2.0),
             " 25 %  30 of 120 s  150 scans/s  15.0 x real time  6 s left");
-  EXPECT_THAT(Progress::describe({.done_s = 1, .expected_s = 121, .runs = 3}, 1.0), HasSubstr("2 min 00 s left  (0 of 3 runs)"));
+  EXPECT_THAT(Progress::describe({.done_s = 1, .expected_s = 121, .runs = 3}, 1.0),
+              HasSubstr("2 min 00 s left  (0 of 3 runs)"));
 }
 
 TEST(Progress, PrintsALinePerTenth) {

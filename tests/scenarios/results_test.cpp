@@ -8,7 +8,7 @@
 #include "core/files.h"
 #include "scenarios/map_file.h"
 #include "scenarios/metrics.h"
-#include "scenarios/result_folder.h"
+#include "scenarios/pending_folder.h"
 
 namespace vsslam {
 namespace {
@@ -64,22 +64,22 @@ TEST(Metrics, ExpectationsTellValueBoundAndPass) {
   EXPECT_EQ(json["loops.recall"], (nlohmann::json{{"value", nullptr}, {"bound", ">= 0"}, {"pass", false}}));
 }
 
-TEST(ResultFolder, AppearsWholeOrNotAtAll) {
+TEST(PendingFolder, AppearsWholeOrNotAtAll) {
   const fs::path out = fresh_folder("result_folder");
   const fs::path place = out / "s" / "m" / "seed_1";
   {
-    ResultFolder folder(place);
+    PendingFolder folder(place);
     write_file(folder.path() / "a", "half");
   }
   EXPECT_TRUE(fs::is_empty(place.parent_path()));
   {
-    ResultFolder folder(place);
+    PendingFolder folder(place);
     write_file(folder.path() / "a", "old");
     EXPECT_FALSE(fs::exists(place));
     folder.commit();
   }
   {
-    ResultFolder folder(place);
+    PendingFolder folder(place);
     write_file(folder.path() / "b", "new");
     folder.commit();
   }
@@ -88,7 +88,7 @@ TEST(ResultFolder, AppearsWholeOrNotAtAll) {
   EXPECT_EQ(std::distance(fs::directory_iterator(place.parent_path()), {}), 1);
 }
 
-TEST(ResultFolder, LatestPointsAtTheNewest) {
+TEST(PendingFolder, LatestPointsAtTheNewest) {
   const fs::path out = fresh_folder("latest");
   for (const char* name : {"one", "two"}) {
     fs::create_directories(out / name);
@@ -103,7 +103,8 @@ TEST(MapFile, IsBinaryPlyOfTheSamePoints) {
   write_ply(path, cloud);
   const std::string bytes = read_file(path);
   EXPECT_THAT(bytes, ::testing::StartsWith("ply\nformat binary_little_endian 1.0\n"));
-  EXPECT_THAT(bytes, ::testing::HasSubstr("element vertex 2\nproperty float x\nproperty float y\nproperty float z\n"));
+  EXPECT_THAT(bytes, ::testing::HasSubstr(
+                         "element vertex 2\nproperty float x\nproperty float y\nproperty float z\n"));
   const std::string end = "end_header\n";
   const size_t data = bytes.find(end) + end.size();
   ASSERT_EQ(bytes.size() - data, 2 * 3 * sizeof(float));

@@ -1,10 +1,9 @@
-#include "scenarios/pipeline.h"
-
 #include <gtest/gtest.h>
 
 #include <set>
 
 #include "core/errors.h"
+#include "scenarios/pipeline.h"
 
 namespace vsslam {
 namespace {
@@ -60,7 +59,9 @@ TEST(Pipelines, GiveTheSameForAnyNumberOfThreads) {
   EXPECT_EQ(sums_with(7), one);
 }
 
-TEST(Pipelines, NothingToDoEndsAtOnce) { run_pipelines({}, 3, std::atomic<bool>(false)); }
+TEST(Pipelines, NothingToDoEndsAtOnce) {
+  run_pipelines({}, 3, std::atomic<bool>(false));
+}
 
 TEST(Pipelines, AnExceptionEndsTheRun) {
   for (const int threads : {1, 3}) {

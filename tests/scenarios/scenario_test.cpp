@@ -54,8 +54,10 @@ TEST(Scenario, TakesItsNameFromTheFileAndItsRestFromTheBase) {
 }
 
 TEST(Scenario, MistakesHaveAPlaceAndAHint) {
-  EXPECT_EQ(error_of("max_duraton_s: 3\n"), "x.yaml:1:1: unknown key \"max_duraton_s\" (did you mean max_duration_s?)");
-  EXPECT_THAT(error_of("lighting: {preset: drak}\n"), HasSubstr("x.yaml:1:20: preset: unknown value \"drak\" (did you mean dark?)"));
+  EXPECT_EQ(error_of("max_duraton_s: 3\n"),
+            "x.yaml:1:1: unknown key \"max_duraton_s\" (did you mean max_duration_s?)");
+  EXPECT_THAT(error_of("lighting: {preset: drak}\n"),
+              HasSubstr("x.yaml:1:20: preset: unknown value \"drak\" (did you mean dark?)"));
   EXPECT_THAT(error_of("closed_loop_latency_s: -1\n"), HasSubstr("x.yaml:1:24"));
   EXPECT_THAT(error_of("seeds: []\n"), HasSubstr("at least one seed"));
   EXPECT_THAT(error_of("name: a/b\n"), HasSubstr("x.yaml:1:7"));
@@ -77,7 +79,8 @@ TEST(Scenario, LibraryNamesAreSuggested) {
 
 TEST(Scenario, MethodsAreCheckedAndListedOnce) {
   EXPECT_EQ(resolve_methods({"all"}), all_methods());
-  EXPECT_THAT(resolve_methods({"lvi-sam", "sc-lvi-sam", "lvi-sam"}), ElementsAre(Method::lvi_sam, Method::sc_lvi_sam));
+  EXPECT_THAT(resolve_methods({"lvi-sam", "sc-lvi-sam", "lvi-sam"}),
+              ElementsAre(Method::lvi_sam, Method::sc_lvi_sam));
   try {
     resolve_methods({"sc-lvi-smm"});
     FAIL();
@@ -96,9 +99,10 @@ TEST(Expectations, NamesAreChecked) {
 
 TEST(Expectations, AMethodsOwnBoundReplacesThatOfAll) {
   Scenario scenario;
-  load_config_text("expect:\n  all: {ate_rmse_m: {max: 1}, ate_max_m: {max: 2}}\n  lvi-sam: {ate_rmse_m: {min: 3}}\n",
-                   "x.yaml", scenario);
-  const Bounds bounds = bounds_for(scenario.expect, "lvi-sam");
+  load_config_text(
+      "expect:\n  all: {ate_rmse_m: {max: 1}, ate_max_m: {max: 2}}\n  lvi-sam: {ate_rmse_m: {min: 3}}\n",
+      "x.yaml", scenario);
+  const MetricBounds bounds = bounds_for(scenario.expect, "lvi-sam");
   EXPECT_EQ(bounds.size(), 2u);
   EXPECT_EQ(bounds.at("ate_rmse_m").text(), ">= 3");
   EXPECT_EQ(bounds.at("ate_max_m").text(), "<= 2");

@@ -6,13 +6,13 @@
 namespace vsslam {
 
 /// Removes what was written unless commit() was called.
-class ResultFolder {
+class PendingFolder {
  public:
   /// `place` is the final folder; its parents are made. Throws ResourceError.
-  explicit ResultFolder(std::filesystem::path place);
-  ~ResultFolder();
-  ResultFolder(const ResultFolder&) = delete;
-  ResultFolder& operator=(const ResultFolder&) = delete;
+  explicit PendingFolder(std::filesystem::path place);
+  ~PendingFolder();
+  PendingFolder(const PendingFolder&) = delete;
+  PendingFolder& operator=(const PendingFolder&) = delete;
 
   /// Where to write until commit().
   const std::filesystem::path& path() const { return part_; }

@@ -1,4 +1,4 @@
-#include "scenarios/result_folder.h"
+#include "scenarios/pending_folder.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -21,20 +21,20 @@ void check(const std::error_code& error, const fs::path& path, const char* what)
 
 }  // namespace
 
-ResultFolder::ResultFolder(fs::path place) : place_(std::move(place)), part_(beside(place_, "part")) {
+PendingFolder::PendingFolder(fs::path place) : place_(std::move(place)), part_(beside(place_, "part")) {
   std::error_code error;
   fs::remove_all(part_, error);
   fs::create_directories(part_, error);
   check(error, part_, "make the folder");
 }
 
-ResultFolder::~ResultFolder() {
+PendingFolder::~PendingFolder() {
   if (done_) return;
   std::error_code ignored;
   fs::remove_all(part_, ignored);
 }
 
-void ResultFolder::commit() {
+void PendingFolder::commit() {
   std::error_code error;
   const fs::path old = beside(place_, "old");
   const bool replaces = fs::exists(place_, error);
