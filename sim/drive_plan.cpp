@@ -30,7 +30,8 @@ class Planner {
 
   DrivePlan plan(const DriveScript& script) {
     if (script.steps.empty()) throw InputError("drive.steps: expected at least one step");
-    plan_.start = here_ = script.start ? start_pose(*script.start) : default_start(script.steps);
+    plan_.start = here_ =
+        script.start ? start_pose(*script.start) : default_start(script.steps, "drive.steps");
     add_steps(script.steps, "drive.steps");
     return std::move(plan_);
   }
@@ -46,10 +47,12 @@ class Planner {
   }
 
   // Where the first path begins.
-  PlanarPose default_start(const std::vector<DriveStep>& steps) const {
-    for (const DriveStep& step : steps) {
-      if (step.loop) return default_start(step.loop->steps);
-      if (step.follow) return follow_path(*step.follow, "drive.steps", std::nullopt).front().begin();
+  PlanarPose default_start(const std::vector<DriveStep>& steps, const std::string& place) const {
+    for (size_t i = 0; i < steps.size(); ++i) {
+      const std::string here = fmt::format("{}[{}]", place, i);
+      if (steps[i].loop) return default_start(steps[i].loop->steps, here + ".loop.steps");
+      if (steps[i].follow)
+        return follow_path(*steps[i].follow, here + ".follow", std::nullopt).front().begin();
     }
     return {};
   }

@@ -24,11 +24,19 @@ void ScoutConfig::fields(Fields& f) {
   f("max_accel_mps2", max_accel_mps2, between(0.05, 10));
   f("accel_mps2", accel_mps2, between(0.02, 10));
   f("yaw_accel_radps2", yaw_accel_radps2, between(0.05, 20));
+  f("vibration_accel_mps2", vibration_accel_mps2, between(0, 10));
+  f("vibration_rate_radps", vibration_rate_radps, between(0, 1));
+  f("vibration_seed", vibration_seed);
   f.check(accel_mps2 <= max_accel_mps2, "accel_mps2", "at most max_accel_mps2");
 }
 
+double total_mass_kg(const ScoutConfig& config) {
+  return config.chassis_mass_kg + config.payload_kg + 4 * config.wheel_mass_kg;
+}
+
 double base_height_m(const ScoutConfig& config) {
-  return config.axle_below_base_m + config.wheel_radius_m;
+  const double compression_m = 0.25 * total_mass_kg(config) * kGravity_mps2 / config.tyre_stiffness_npm;
+  return config.axle_below_base_m + config.wheel_radius_m - compression_m;
 }
 
 // Four equal contacts at (+-L/2, +-W/2), wheels at surface speed -+v: contact i slips at (-+(v - w W/2), +-w

@@ -35,6 +35,11 @@ struct ScoutConfig {
   double accel_mps2 = 0.8;  ///< along the path
   double yaw_accel_radps2 = 1.5;
 
+  // Vibration on purpose (tyre lugs, floor texture): of the base frame, RMS at 1 m/s, growing with the speed squared.
+  double vibration_accel_mps2 = 0;  ///< vertical
+  double vibration_rate_radps = 0;  ///< roll and pitch, each
+  uint64_t vibration_seed = 1;
+
   void fields(Fields& f);
 };
 

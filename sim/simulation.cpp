@@ -8,6 +8,7 @@
 #include "core/errors.h"
 #include "sim/drive_controller.h"
 #include "sim/dynamics.h"
+#include "sim/vibration.h"
 #include "sim/wheel_log.h"
 
 namespace vsslam {
@@ -71,6 +72,7 @@ struct Simulation::Impl {
         driver(scout, plan_drive(script, world_, scout)),
         dynamics(world_, scout, driver.plan().start.position_m.x(), driver.plan().start.position_m.y(),
                  driver.plan().start.yaw_rad),
+        vibration(scout),
         wheels(scout) {
     for (const Object& object : world_.objects) object_names.push_back(object.name);
     settle();
@@ -83,7 +85,8 @@ struct Simulation::Impl {
         throw InputError(
             fmt::format("drive.start: at {} the robot touches {}", place_text(), touched_name()));
     }
-    trajectory.push(now - trajectory.knot_interval(), dynamics.state().T_world_base);
+    trajectory.push(now - trajectory.knot_interval(),
+                    dynamics.state().T_world_base * vibration.T_still_base());
     record();
   }
 
@@ -98,9 +101,11 @@ struct Simulation::Impl {
   void record() {
     const RobotState& state = dynamics.state();
     wheels.push(now, state);
-    deviation.push(now, state.T_world_base);
+    vibration.roll_on(state, kStep_s);
+    const SE3 T_world_base = state.T_world_base * vibration.T_still_base();
+    deviation.push(now, T_world_base);
     if (now.ns % trajectory.knot_interval().ns != 0) return;
-    trajectory.push(now, state.T_world_base);
+    trajectory.push(now, T_world_base);
     deviation.compare(trajectory);
   }
 
@@ -151,6 +156,7 @@ struct Simulation::Impl {
   std::vector<std::string> object_names;
   DriveController driver;
   Dynamics dynamics;
+  Vibration vibration;
   Time now;
   Trajectory trajectory;
   WheelLog wheels;
