@@ -9,8 +9,9 @@ namespace vsslam {
 
 namespace {
 
-constexpr double kReach_m = 0.6;     // distance in which an offset from the path decays
-constexpr double kSteepest = 0.57;   // sine of the angle at which the path is approached: 35 deg
+constexpr double kReach_m = 0.6;    // distance in which an offset from the path decays
+constexpr double kSteepest = 0.57;  // sine of the angle at which the path is approached: 35 deg
+constexpr double kAhead_m = 0.15;
 constexpr double kPreview_s = 0.06;  // the command runs ahead by what the yaw rate lags
 constexpr double kAligned_rad = 0.05, kMisaligned_rad = 1.1;
 constexpr double kTurned_rad = 0.003;
@@ -105,7 +106,9 @@ DriveController::Targets DriveController::follow(const PlannedFollow& follow, co
   const double curvature_radpm = ahead.curvature_radpm / std::max(0.5, 1 - ahead.curvature_radpm * offset_m) -
                                  2 / kReach_m * (std::sin(heading_error_rad) + back);
   const double braking_mps = std::sqrt(2 * 0.8 * scout_.accel_mps2 * remaining_m);
-  const double reachable_mps = std::max(kCreep_mps, path.at(along_m_ + 0.15).speed_mps);
+  // The profile a little ahead, for what the robot lags; towards the end braking_mps alone decides.
+  const double profile_m = remaining_m > 2 * kAhead_m ? along_m_ + kAhead_m : along_m_;
+  const double reachable_mps = std::max(kCreep_mps, path.at(profile_m).speed_mps);
   const double turnable_mps = 0.9 * scout_.max_yaw_rate_radps / std::max(std::abs(curvature_radpm), 1e-6);
   const double speed_mps = std::min({reachable_mps, std::max(kCreep_mps, braking_mps), turnable_mps});
   return {speed_mps, std::min(speed_mps_, speed_mps + 0.05) * curvature_radpm};
