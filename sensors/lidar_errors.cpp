@@ -73,17 +73,18 @@ void LidarErrors::detect(const EchoPacket& echo, size_t laser, int64_t first_cyc
 void LidarErrors::add_bias_and_noise(const EchoPacket& echo, size_t laser, int64_t first_cycle,
                                      float (&range_m)[kLanes]) const {
   const float bias = laser_bias_m_[laser];
-  for (int i = 0; i < kLanes; ++i) {
-    const float cell = echo.cos_incidence[i] * kBiasCells;
-    const int k = std::min(static_cast<int>(cell), kBiasCells - 1);
-    const float low = bias_per_m_[static_cast<size_t>(k)], high = bias_per_m_[static_cast<size_t>(k) + 1];
-    const float per_m = low + (cell - static_cast<float>(k)) * (high - low);
-    range_m[i] = echo.mean_range_m[i] + (bias + per_m * echo.mean_range_m[i]);
-  }
+  const float* const per_m_at = bias_per_m_.data();
+  float noise[kLanes] = {};
   const auto sigma = static_cast<float>(config_.range_sigma_m);
-  if (sigma == 0) return;
-  for (int i = 0; i < kLanes; ++i)
-    range_m[i] += sigma * normal_(range_noise_.bits(static_cast<uint64_t>(first_cycle + i), laser));
+  if (sigma > 0) normal_.sixteen(range_noise_, first_cycle, laser, noise);
+#pragma GCC ivdep
+  for (int i = 0; i < kLanes; ++i) {
+    const float cell = echo.cos_incidence[i] * kBiasCells, range = echo.mean_range_m[i];
+    const int k = std::min(static_cast<int>(cell), kBiasCells - 1);
+    const float low = per_m_at[k], high = per_m_at[k + 1];
+    const float per_m = low + (cell - static_cast<float>(k)) * (high - low);
+    range_m[i] = range + (bias + per_m * range) + sigma * noise[i];
+  }
 }
 
 void LidarErrors::report(const EchoPacket& echo, size_t laser, int64_t first_cycle,
@@ -96,18 +97,21 @@ void LidarErrors::report(const EchoPacket& echo, size_t laser, int64_t first_cyc
   add_bias_and_noise(echo, laser, first_cycle, out.range_m);
   if (const auto step = static_cast<float>(config_.range_step_m); step > 0) {
     const float per_step = 1 / step;
+#pragma GCC ivdep
     for (int i = 0; i < kLanes; ++i) out.range_m[i] = std::rint(out.range_m[i] * per_step) * step;
   }
   for (int i = 0; i < kLanes; ++i) out.any[i] &= out.range_m[i] >= low && out.range_m[i] <= high ? 1 : 0;
 
   float noise[kLanes] = {};
-  if (const auto sigma = static_cast<float>(config_.intensity_sigma); sigma > 0)
-    for (int i = 0; i < kLanes; ++i)
-      noise[i] = sigma * normal_(intensity_noise_.bits(static_cast<uint64_t>(first_cycle + i), laser));
+  const auto sigma = static_cast<float>(config_.intensity_sigma);
+  if (sigma > 0) normal_.sixteen(intensity_noise_, first_cycle, laser, noise);
+#pragma GCC ivdep
   for (int i = 0; i < kLanes; ++i) {
-    const bool retro = echo.reflectivity[i] > 100;
-    const float least = retro ? 101.0f : 0.0f, most = retro ? 255.0f : 100.0f;
-    out.intensity[i] = std::rint(std::min(most, std::max(least, echo.reflectivity[i] + noise[i])));
+    const float byte = echo.reflectivity[i] + sigma * noise[i];
+    const float least = echo.reflectivity[i] > 100 ? 101.0f : 0.0f;
+    const float most = echo.reflectivity[i] > 100 ? 255.0f : 100.0f;
+    const float above = byte > least ? byte : least;
+    out.intensity[i] = std::rint(above < most ? above : most);
   }
 }
 

@@ -46,24 +46,17 @@ class NormalTable {
  public:
   static const NormalTable& instance();
   /// Uses the upper 32 bits.
-  float operator()(uint64_t bits) const {
-    const auto word = static_cast<uint32_t>(bits >> 32);
-    const auto half = static_cast<float>(static_cast<int32_t>(word >> 1));  // p = (half + 1/2) 2^-32
-    const bool fine = half < 0x1.0p27f;
-    const float cell = (half + 0.5f) * (fine ? 0x1.0p-18f : 0x1.0p-23f);
-    const int k = static_cast<int>(cell);
-    const size_t at = static_cast<size_t>(k) + (fine ? kCoarse + 1 : 0);
-    float x = quantile_[at] + (cell - static_cast<float>(k)) * (quantile_[at + 1] - quantile_[at]);
-    if (half < kExactBelow) x = exact(word >> 1);
-    return (word & 1) != 0 ? -x : x;
-  }
+  float operator()(uint64_t bits) const;
+  /// out[i] = (*this)(stream.bits(first + i, index)), sixteen at once.
+  void sixteen(const RandomStream& stream, int64_t first, uint64_t index, float (&out)[16]) const;
 
  private:
   NormalTable();
-  static float exact(uint32_t half);
-  static constexpr size_t kCoarse = 256, kFine = 512;
-  static constexpr float kExactBelow = 0x1.0p22f;  ///< p = 1/1024
-  std::array<float, kCoarse + 1 + kFine + 1> quantile_{};
+  static float tail(int32_t half);
+  void look_up(const int32_t (&words)[16], float (&out)[16]) const;
+  static constexpr int kCoarse = 256, kFine = 512;
+  static constexpr int32_t kExactBelow = 1 << 22;  ///< p = 1/1024
+  std::array<float, static_cast<size_t>(kCoarse + 1 + kFine + 1)> quantile_{};
 };
 
 }  // namespace vsslam

@@ -146,28 +146,36 @@ struct Raycaster::Impl {
   /// Range and normal from the plane of the triangle that was hit.
   void refine(const RayPacket& rays, HitPacket& hits) const {
     alignas(64) double nx[16], ny[16], nz[16], offset[16];
-    for (int i = 0; i < 16; ++i) {
-      Plane plane{0, 0, 0, 0};
-      hits.material[i] = 0;
-      if (hits.object[i] != HitPacket::kNoHit) {
-        const TracedObject& object = objects[hits.object[i]];
-        plane = object.planes[hits.triangle[i]];
-        hits.material[i] = object.materials[hits.triangle[i]];
+    uint32_t last_object = HitPacket::kNoHit, last_triangle = 0;
+    Plane plane{0, 0, 0, 0};
+    int material = 0;
+    for (int i = 0; i < 16; ++i) {  // neighbours mostly hit the same triangle
+      const uint32_t id = hits.object[i], triangle = hits.triangle[i];
+      if (id != HitPacket::kNoHit && (id != last_object || triangle != last_triangle)) {
+        plane = objects[id].planes[triangle];
+        material = objects[id].materials[triangle];
+        last_object = id, last_triangle = triangle;
       }
       nx[i] = plane.nx, ny[i] = plane.ny, nz[i] = plane.nz, offset[i] = plane.offset;
+      hits.material[i] = material;
     }
+    float* const range_m = hits.range_m;
+    float* const normal_x = hits.normal_x;
+    float* const normal_y = hits.normal_y;
+    float* const normal_z = hits.normal_z;
+#pragma GCC ivdep
     for (int i = 0; i < 16; ++i) {
       const double along =
           nx[i] * rays.direction_x[i] + ny[i] * rays.direction_y[i] + nz[i] * rays.direction_z[i];
       const double height = nx[i] * rays.origin_x[i] + ny[i] * rays.origin_y[i] + nz[i] * rays.origin_z[i];
-      const float range = static_cast<float>((offset[i] - height) / along);
+      const auto range = static_cast<float>((offset[i] - height) / along);
       // A ray within the plane has no better answer than Embree's.
-      const bool better = std::abs(range - hits.range_m[i]) < 1e-3f * (1.0f + hits.range_m[i]);
-      hits.range_m[i] = better ? range : hits.range_m[i];
+      const float found = range_m[i], difference = std::abs(range - found);
+      range_m[i] = difference < 1e-3f * (1.0f + found) ? range : found;
       const double side = along > 0 ? -1.0 : 1.0;
-      hits.normal_x[i] = static_cast<float>(side * nx[i]);
-      hits.normal_y[i] = static_cast<float>(side * ny[i]);
-      hits.normal_z[i] = static_cast<float>(side * nz[i]);
+      normal_x[i] = static_cast<float>(side * nx[i]);
+      normal_y[i] = static_cast<float>(side * ny[i]);
+      normal_z[i] = static_cast<float>(side * nz[i]);
     }
   }
 };
