@@ -28,12 +28,6 @@ namespace fs = std::filesystem;
 constexpr int kLargestSide_px = 16384;
 constexpr int64_t kMostPixels = int64_t{1} << 26;
 
-uint32_t word_at(std::string_view bytes, size_t at) {
-  uint32_t word;
-  std::memcpy(&word, bytes.data() + at, sizeof word);
-  return word;
-}
-
 /// What the callbacks below need to know.
 struct Loading {
   std::string file;
@@ -330,16 +324,18 @@ class ModelWriter {
     for (const Route& route : world_.routes) {
       Value::Array points;
       for (const Vec3& p : route.points_world) points.push_back(to_value(p));
-      routes.push_back(Value(Value::Object{{"name", Value(route.name)},
-                                           {"closed", Value(route.closed)},
-                                           {"points_world", Value(std::move(points))}}));
+      Value::Object written{{"name", Value(route.name)}, {"closed", Value(route.closed)}};
+      if (!points.empty()) written["points_world"] = Value(std::move(points));
+      routes.push_back(Value(std::move(written)));
     }
     // A seed has 64 bits, more than a number of tinygltf: it travels as text.
-    scene.extras = in_extras({{"floor", Value(Value::Object{{"height_m", Value(f.height_m)},
-                                                            {"unevenness_m", Value(f.unevenness_m)},
-                                                            {"wavelength_m", Value(f.wavelength_m)},
-                                                            {"seed", Value(std::to_string(f.seed))}})},
-                              {"routes", Value(std::move(routes))}});
+    Value::Object extras{{"floor", Value(Value::Object{{"height_m", Value(f.height_m)},
+                                                       {"unevenness_m", Value(f.unevenness_m)},
+                                                       {"wavelength_m", Value(f.wavelength_m)},
+                                                       {"seed", Value(std::to_string(f.seed))}})}};
+    // tinygltf would write an empty list as null.
+    if (!routes.empty()) extras["routes"] = Value(std::move(routes));
+    scene.extras = in_extras(std::move(extras));
     model_.scenes.push_back(std::move(scene));
     model_.defaultScene = 0;
   }
@@ -357,21 +353,6 @@ void write_glb(const World& world, const fs::path& path) {
   if (!output.WriteGltfSceneToStream(&writer.model(), stream, false, true))
     throw ResourceError(path.string() + ": cannot be written");
   write_file(path, stream.view());
-}
-
-std::string_view gltf_json_text(std::string_view bytes, const std::string& file) {
-  constexpr uint32_t kMagic = 0x46546C67, kJson = 0x4E4F534A;
-  if (bytes.size() < 4 || word_at(bytes, 0) != kMagic) return bytes;
-  const auto fail = [&](const std::string& message) { throw InputError(file + ": " + message); };
-  if (bytes.size() < 20) fail("truncated: a .glb has a header of 20 bytes");
-  if (word_at(bytes, 4) != 2) fail(fmt::format("container version {}, expected 2", word_at(bytes, 4)));
-  const size_t length = word_at(bytes, 8), json_bytes = word_at(bytes, 12);
-  if (length > bytes.size()) fail(fmt::format("truncated: {} of {} bytes", bytes.size(), length));
-  if (word_at(bytes, 16) != kJson) fail("its first chunk is not JSON");
-  if (20 + json_bytes > length) fail("the JSON chunk is longer than the file");
-  if (20 + json_bytes + 8 <= length && 20 + json_bytes + 8 + size_t{word_at(bytes, 20 + json_bytes)} > length)
-    fail("the binary chunk is longer than the file");
-  return bytes.substr(20, json_bytes);
 }
 
 GltfContent load_gltf_content(const fs::path& path, std::string_view bytes,

@@ -12,9 +12,6 @@
 
 namespace vsslam {
 
-/// The JSON text inside a .glb, or the whole text of a .gltf. Throws InputError if the container is broken.
-std::string_view gltf_json_text(std::string_view bytes, const std::string& file);
-
 struct GltfBufferInfo {
   size_t byte_length = 0;
   bool beside = false;  ///< in a file of its own

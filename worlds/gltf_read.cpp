@@ -7,6 +7,7 @@
 #include "core/errors.h"
 #include "core/files.h"
 #include "worlds/gltf.h"
+#include "worlds/gltf_container.h"
 #include "worlds/gltf_parts.h"
 #include "worlds/gltf_schema.h"
 

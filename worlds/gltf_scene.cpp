@@ -213,9 +213,9 @@ void read_routes(const GltfExtras& extras, World& world) {
       expect(source["closed"].is_boolean(), route.name + ": closed: expected true or false");
       route.closed = source["closed"].get<bool>();
     }
-    expect(source.contains("points_world") && source["points_world"].is_array(),
-           route.name + ": expected points_world");
-    for (const json& point : source["points_world"]) {
+    const json points = source.value("points_world", json::array());
+    expect(points.is_array(), route.name + ": points_world: expected a list");
+    for (const json& point : points) {
       expect(point.is_array() && point.size() == 3, route.name + ": expected points of three numbers");
       Vec3 p;
       for (size_t i = 0; i < 3; ++i) {

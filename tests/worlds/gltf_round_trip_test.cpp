@@ -65,6 +65,21 @@ TEST(GltfRoundTrip, PlacementsLightsAndMaterials) {
   expect_same(world, there_and_back(world, "odd.glb"));
 }
 
+TEST(GltfRoundTrip, NothingButOneTriangle) {
+  World world;
+  world.name = "bare";
+  world.materials.push_back({.name = ""});
+  world.meshes.push_back({.name = "", .primitives = {{}}});
+  Primitive& p = world.meshes[0].primitives[0];
+  p.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  p.normals.assign(3, Vec3f::UnitZ());
+  p.triangles = {{0, 1, 2}};
+  world.objects.push_back({.name = "only"});
+  expect_same(world, there_and_back(world, "bare.glb"));
+  world.routes.emplace_back().name = "nowhere";
+  expect_same(world, there_and_back(world, "bare.glb"));
+}
+
 TEST(GltfRoundTrip, WritesTheSameBytesTwice) {
   RoomConfig config;
   config.textures = false;
