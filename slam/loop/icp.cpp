@@ -186,26 +186,43 @@ void score(const Pairing& pairing, double overlap_distance_m, IcpResult& result)
   result.overlap = static_cast<double>(near) / all;
 }
 
-}  // namespace
-
-IcpResult align(const Cloud& source, const IcpTarget& target, const SE3& T_target_source,
-                const IcpConfig& config, double overlap_distance_m) {
-  IcpResult result;
-  result.T_target_source = T_target_source;
-  Pairing pairing(source, target, config.max_correspondence_m);
+/// Iterates until the transform stands still or `last_iteration` is reached. False: too few correspondences.
+bool iterate(Pairing& pairing, const IcpConfig& config, int last_iteration, IcpResult& result) {
   double previous_mse = std::numeric_limits<double>::max();
-  while (!result.converged) {
+  while (true) {
     pairing.update(result.T_target_source);
     const Moments m = moments(pairing);
-    if (m.count < 3) break;
+    if (m.count < 3) return false;
     const SE3 before = result.T_target_source;
     result.T_target_source = closed_form(m);
     ++result.iterations;
     const SE3 step = result.T_target_source * before.inverse();
-    result.converged = result.iterations >= config.max_iterations ||
-                       stands_still(step, m.mean_squared_m2, previous_mse, config);
+    if (result.iterations >= last_iteration || stands_still(step, m.mean_squared_m2, previous_mse, config))
+      return true;
     previous_mse = m.mean_squared_m2;
   }
+}
+
+Cloud every_nth(const Cloud& cloud, int n) {
+  Cloud out;
+  for (size_t i = 0; i < cloud.size(); i += static_cast<size_t>(n)) out.push_back(cloud[i]);
+  return out;
+}
+
+}  // namespace
+
+IcpResult align(const Cloud& source, const IcpTarget& target, const SE3& T_target_source,
+                const IcpConfig& config, double overlap_distance_m) {
+  constexpr int kLeftForAll = 10;  // iterations
+  IcpResult result;
+  result.T_target_source = T_target_source;
+  if (config.coarse_stride > 1 && config.max_iterations > kLeftForAll) {
+    const Cloud coarse = every_nth(source, config.coarse_stride);
+    Pairing pairing(coarse, target, config.max_correspondence_m);
+    iterate(pairing, config, config.max_iterations - kLeftForAll, result);
+  }
+  Pairing pairing(source, target, config.max_correspondence_m);
+  result.converged = iterate(pairing, config, config.max_iterations, result);
   pairing.update(result.T_target_source);
   score(pairing, overlap_distance_m, result);
   return result;

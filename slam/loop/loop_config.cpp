@@ -56,6 +56,7 @@ void LocalMapConfig::fields(Fields& f) {
 void IcpConfig::fields(Fields& f) {
   f("max_correspondence_m", max_correspondence_m, positive());
   f("max_iterations", max_iterations, between(1, 10000));
+  f("coarse_stride", coarse_stride, between(1, 1000));
   f("step_translation_m", step_translation_m, non_negative());
   f("step_rotation_rad", step_rotation_rad, between(0, 1));
   f("relative_mse_change", relative_mse_change, between(0, 1));

@@ -34,7 +34,10 @@ struct LocalMapConfig {
 /// when the iterations are used up (as in PCL).
 struct IcpConfig {
   double max_correspondence_m = 2.0;
-  int max_iterations = 100;
+  int max_iterations = 100;  ///< of both passes together
+  /// A first pass moves every n-th source point only; the second, with all of them, begins where it ends.
+  /// 1: one pass, as PCL does it.
+  int coarse_stride = 4;
   double step_translation_m = 1e-3;
   double step_rotation_rad = 1.414e-3;
   double relative_mse_change = 1e-6;

@@ -35,8 +35,8 @@ TEST(IcpBesidePcl, SamePathSameResult) {
     twin.align(unused, guess.matrix4().cast<float>());
     const Eigen::Matrix4d expected = twin.getFinalTransformation().cast<double>();
 
-    const IcpResult ours =
-        align(source, IcpTarget(target), guess, {.max_correspondence_m = max_correspondence_m}, 0.5);
+    const IcpResult ours = align(source, IcpTarget(target), guess,
+                                 {.max_correspondence_m = max_correspondence_m, .coarse_stride = 1}, 0.5);
     EXPECT_TRUE(ours.converged);
     EXPECT_TRUE(twin.hasConverged());
     EXPECT_LT((ours.T_target_source.matrix4() - expected).norm(), 2e-3);
