@@ -149,6 +149,7 @@ struct Dynamics::Impl {
   struct WheelBody {
     std::unique_ptr<btRigidBody> body, floor;
     std::unique_ptr<btHingeConstraint> hinge;
+    Vec3 up_world = Vec3::UnitZ();  // the floor's normal at the contact
     double friction = -1;
     double last_angle_rad = 0;  // of the hinge, in (-pi, pi]
   };
@@ -157,7 +158,7 @@ struct Dynamics::Impl {
     bullet.setGravity({0, 0, -kGravity_mps2});
     bullet.setForceUpdateAllAabbs(false);
     btContactSolverInfo& info = bullet.getSolverInfo();
-    info.m_numIterations = 10;
+    info.m_numIterations = 8;
     info.m_splitImpulse = false;  // the tyres are springs: there is no penetration to push out
     // One friction direction, along the slip: a sliding contact brakes with mu N exactly against its motion.
     // Without warm starts, which would carry last step's friction into a direction that has turned since.
@@ -218,13 +219,14 @@ struct Dynamics::Impl {
     return {forward * scout.wheelbase_m, left * scout.track_m, -scout.axle_below_base_m};
   }
 
-  // The plane that touches the floor where the wheel does.
+  // The plane that touches the floor where the wheel does. Where that is, last step's normal tells.
   void lay_floor(WheelBody& wheel) {
-    const Vec3 centre_world = to_eigen(wheel.body->getWorldTransform().getOrigin());
-    const Vec3 below = centre_world - scout.wheel_radius_m * floor.normal(centre_world.x(), centre_world.y());
-    const Vec3 up_world = floor.normal(below.x(), below.y());
+    const Vec3 below =
+        to_eigen(wheel.body->getWorldTransform().getOrigin()) - scout.wheel_radius_m * wheel.up_world;
     const Vec3 contact_world(below.x(), below.y(), floor.height(below.x(), below.y()));
-    wheel.floor->setWorldTransform(to_bullet(Quat::FromTwoVectors(Vec3::UnitZ(), up_world), contact_world));
+    wheel.up_world = floor.normal(below.x(), below.y());
+    wheel.floor->setWorldTransform(
+        to_bullet(Quat::FromTwoVectors(Vec3::UnitZ(), wheel.up_world), contact_world));
   }
 
   void drive(int i, double radps, double friction_scale) {
@@ -260,7 +262,7 @@ struct Dynamics::Impl {
   }
 
   // Stiction: what has all but stood for a while without being driven stands, until it is driven or the floor
-  // changes. The solver's ten iterations would let it creep by 0.1 mm/s.
+  // changes. The solver's few iterations would let it creep by 0.1 mm/s.
   bool stands(const Sides& wheel_radps, const Sides& friction_scale) {
     constexpr int kSteps = 100;
     constexpr double kSlow_mps = 2e-3, kSlow_radps = 4e-3;
