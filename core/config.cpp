@@ -203,8 +203,12 @@ class Loader final : public Fields {
     if (!n) return;
     if (!n.IsScalar()) fail_type(n, "base", "a name or a path");
     const std::string name = n.Scalar();
-    const fs::path path =
-        name.ends_with(".yaml") ? folder_ / name : (library_ ? library_(kind, name) : fs::path{});
+    fs::path path;
+    try {
+      path = name.ends_with(".yaml") ? folder_ / name : (library_ ? library_(kind, name) : fs::path{});
+    } catch (const InputError& e) {  // a library may know the nearest name
+      fail(n, fmt::format("base: {}", e.what()));
+    }
     if (path.empty()) fail(n, fmt::format("base: no \"{}\" among the {}", name, kind));
     if (std::find(chain_.begin(), chain_.end(), path) != chain_.end())
       fail(n, fmt::format("base: {} names itself as its base", path.string()));

@@ -9,6 +9,7 @@
 #include "core/errors.h"
 #include "core/files.h"
 #include "scenarios/progress.h"
+#include "slam/loop/loop_config.h"
 
 namespace vsslam {
 namespace {
