@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <fstream>
+#include <sstream>
 
 #include "core/errors.h"
 #include "core/files.h"
@@ -87,6 +87,24 @@ TEST(Scenario, MethodsAreCheckedAndListedOnce) {
   } catch (const InputError& e) {
     EXPECT_THAT(e.what(), HasSubstr("sc-lvi-sam"));
   }
+}
+
+// The yaml block of docs/scenarios.md without its comments.
+std::string documented_defaults() {
+  std::istringstream doc(read_file(std::filesystem::path(VSSLAM_SOURCE_DIR) / "docs/scenarios.md"));
+  std::string text;
+  bool inside = false;
+  for (std::string line; std::getline(doc, line);) {
+    if (line.starts_with("```"))
+      inside = line == "```yaml";
+    else if (inside)
+      text += line.substr(0, line.find("  # ")) + "\n";
+  }
+  return text;
+}
+
+TEST(Scenario, EveryKeyAndDefaultIsDocumented) {
+  EXPECT_EQ(documented_defaults(), save_config(Scenario{}));
 }
 
 TEST(Expectations, NamesAreChecked) {
