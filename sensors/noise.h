@@ -56,7 +56,8 @@ class NormalTable {
   void look_up(const int32_t (&words)[16], float (&out)[16]) const;
   static constexpr int kCoarse = 256, kFine = 512;
   static constexpr int32_t kExactBelow = 1 << 22;  ///< p = 1/1024
-  std::array<float, static_cast<size_t>(kCoarse + 1 + kFine + 1)> quantile_{};
+  /// Coarse knots, fine knots, and a spare one, because rounding may lift the last cell by one.
+  std::array<float, static_cast<size_t>(kCoarse + 1 + kFine + 1 + 1)> quantile_{};
 };
 
 }  // namespace vsslam
