@@ -53,9 +53,9 @@ const SCALES = {
     range: (low, high) => [Math.floor(low), Math.max(Math.ceil(high), Math.floor(low) + 1)],
     ticks: (low, high) => roundTicks(low, high, 6).filter(Number.isInteger).map(v => [v, label(10 ** v)]),
   },
-  // Nines: 0, 0.9, 0.99, ... are equally far apart.
+  // Nines: 0, 0.9, 0.99, ... are equally far apart; beyond 0.9999 nothing is told apart.
   oblateness: {
-    forward: v => -Math.log10(Math.max(1 - v, 1e-6)),
+    forward: v => -Math.log10(Math.max(1 - v, 1e-4)),
     range: (low, high) => [0, Math.max(2, Math.ceil(high))],
     ticks: (low, high) => roundTicks(0, high, 6).filter(Number.isInteger).map(v => [v, v === 0 ? '0' : (1 - 10 ** -v).toFixed(v)]),
   },

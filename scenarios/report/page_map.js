@@ -200,7 +200,7 @@ class MapView {
     this.run.stored.x.forEach((x, i) => {
       const [px, py] = this.toScreen(x, this.run.stored.y[i]);
       g.beginPath();
-      g.arc(px, py, 3.2, 0, 2 * Math.PI);
+      g.arc(px, py, 2.6, 0, 2 * Math.PI);
       g.fill();
     });
   }

@@ -74,9 +74,12 @@ std::optional<double> number_at(const json& object, const char* pointer) {
   return object.at(at).get<double>();
 }
 
-/// With thin spaces between groups of three digits.
+/// With thin spaces between groups of three digits. Small values get more decimals, for two significant digits.
 std::string number_html(std::optional<double> value, int decimals) {
   if (!value) return "<span class=\"none\">–</span>";
+  for (int more = 0;
+       decimals > 0 && more < 2 && *value != 0 && std::abs(*value) * std::pow(10, decimals) < 10; ++more)
+    ++decimals;
   std::string text = fmt::format("{:.{}f}", *value, decimals);
   const size_t whole = std::min(text.find('.'), text.size());
   const size_t first = text[0] == '-' ? 1 : 0;
