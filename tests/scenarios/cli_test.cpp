@@ -128,7 +128,7 @@ TEST(Cli, OptimizePrintsTheContract) {
 TEST(Cli, WorldIsWrittenAndDescribed) {
   const std::string glb = (std::filesystem::path(testing::TempDir()) / "room.glb").string();
   const Outcome made =
-      call({"world", "room", "--set", "length_m=9", "--set", "textures=false", "--out", glb});
+      call({"world", "room", "--set", "length_m=11", "--set", "textures=false", "--out", glb});
   ASSERT_EQ(made.code, kDone) << made.err;
   const Outcome described = call({"world", glb, "--info", "--json"});
   ASSERT_EQ(described.code, kDone) << described.err;
@@ -136,7 +136,7 @@ TEST(Cli, WorldIsWrittenAndDescribed) {
   EXPECT_GT(json["triangles"].get<int>(), 100);
   const double length_m =
       json["extent"]["high_m"][0].get<double>() - json["extent"]["low_m"][0].get<double>();
-  EXPECT_NEAR(length_m, 9.0, 0.6);
+  EXPECT_NEAR(length_m, 11.0, 0.6);
 }
 
 class FakeClock final : public StageClock {

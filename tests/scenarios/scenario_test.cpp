@@ -112,7 +112,7 @@ TEST(Expectations, NamesAreChecked) {
   EXPECT_THAT(error_of("expect: {al: {ate_rmse_m: {max: 0.1}}}\n"), HasSubstr("did you mean all?"));
   EXPECT_THAT(error_of("expect: {all: {ate_rsme_m: {max: 0.1}}}\n"), HasSubstr("did you mean ate_rmse_m?"));
   EXPECT_THAT(error_of("expect: {all: {ate_rmse_m: {}}}\n"), HasSubstr("min, max or both"));
-  EXPECT_THAT(error_of("expect: {all: {ate_rmse_m: {most: 1}}}\n"), HasSubstr("unknown key \"most\""));
+  EXPECT_THAT(error_of("expect: {all: {ate_rmse_m: {max: 1, most: 1}}}\n"), HasSubstr("unknown key \"most\""));
 }
 
 TEST(Expectations, AMethodsOwnBoundReplacesThatOfAll) {
