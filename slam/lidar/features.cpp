@@ -22,92 +22,92 @@ void FeatureConfig::fields(Fields& f) {
 
 namespace {
 
-// One ring, in order of time. Prefix sums make the mean over any window O(1).
-struct Ring {
+// The scan sorted by ring, each ring in order of time. Prefix sums make means and counts over a window O(1).
+struct RingOrder {
+  std::vector<uint32_t> begin;  // of each ring, and the end of the last
   std::vector<uint32_t> index;  // into scan.points
   std::vector<float> range_m, time_s;
-  std::vector<Vec3> prefix_lidar;  // sum of the points before i
+  Cloud points_lidar;           // sorted
+  std::vector<uint32_t> steps;  // number of range steps before i
   std::vector<uint8_t> shadowed;
+  float period_s = std::numeric_limits<float>::max();  // between two firings of a laser: the shortest seen
 
-  void clear() {
-    index.clear();
-    range_m.clear();
-    time_s.clear();
-    prefix_lidar.assign(1, Vec3::Zero());
-    shadowed.clear();
+  RingOrder(const LidarScan& scan, const Cloud& undistorted_lidar, int rings, double jump_m) {
+    sort_by_ring(scan, static_cast<size_t>(rings));
+    const size_t n = index.size();
+    range_m.resize(n);
+    time_s.resize(n);
+    shadowed.assign(n, 0);
+    points_lidar.resize(n);
+    for (size_t i = 0; i < n; ++i) {
+      const LidarPoint& p = scan.points[index[i]];
+      range_m[i] = std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z);
+      time_s[i] = p.time_s;
+      points_lidar[i] = undistorted_lidar[index[i]];
+    }
+    count_steps(static_cast<float>(jump_m));
   }
-  void push(uint32_t i, const LidarPoint& p, const Eigen::Vector3f& point_lidar) {
-    index.push_back(i);
-    range_m.push_back(std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z));
-    time_s.push_back(p.time_s);
-    prefix_lidar.push_back(prefix_lidar.back() + point_lidar.cast<double>());
-    shadowed.push_back(0);
-  }
-  size_t size() const { return index.size(); }
-};
 
-// Time between two firings of a laser: the shortest step in any ring.
-float firing_period_s(const std::vector<Ring>& rings) {
-  float period_s = std::numeric_limits<float>::max();
-  for (const Ring& ring : rings)
-    for (size_t i = 1; i < ring.size(); ++i) {
-      const float step_s = ring.time_s[i] - ring.time_s[i - 1];
+  void sort_by_ring(const LidarScan& scan, size_t rings) {
+    begin.assign(rings + 1, 0);
+    for (const LidarPoint& p : scan.points)
+      if (p.ring < rings) ++begin[p.ring + 1u];
+    for (size_t r = 0; r < rings; ++r) begin[r + 1] += begin[r];
+    std::vector<uint32_t> next = begin;
+    index.resize(begin.back());
+    for (uint32_t i = 0; i < scan.points.size(); ++i)
+      if (scan.points[i].ring < rings) index[next[scan.points[i].ring]++] = i;
+  }
+
+  void count_steps(float jump_m) {
+    steps.assign(index.size() + 1, 0);
+    for (size_t i = 1; i < index.size(); ++i) {
+      steps[i] = steps[i - 1] + (std::abs(range_m[i] - range_m[i - 1]) > jump_m ? 1 : 0);
+      const float step_s = time_s[i] - time_s[i - 1];
       if (step_s > 1e-6f) period_s = std::min(period_s, step_s);
     }
-  return period_s;
-}
+  }
+};
 
-void mark_shadow_edges(Ring& ring, float period_s, const FeatureConfig& config) {
-  constexpr float kNear = 10.5f;  // steps that still count as beside each other
-  const auto jump_m = static_cast<float>(config.occlusion_jump_m);
-  for (size_t i = 0; i + 1 < ring.size(); ++i) {
-    if (ring.time_s[i + 1] - ring.time_s[i] > kNear * period_s) continue;
-    const float step_m = ring.range_m[i + 1] - ring.range_m[i];
-    if (step_m > jump_m) {
-      const size_t last = std::min(i + static_cast<size_t>(config.occlusion_neighbours), ring.size() - 1);
-      for (size_t j = i + 1; j <= last; ++j) ring.shadowed[j] = 1;
-    } else if (-step_m > jump_m) {
-      const auto n = static_cast<size_t>(config.occlusion_neighbours);
-      for (size_t j = i + 1 > n ? i + 1 - n : 0; j <= i; ++j) ring.shadowed[j] = 1;
-    }
+// Beside a range step the farther surface is seen only up to the shadow of the nearer one.
+void mark_shadow_edges(RingOrder& order, size_t begin, size_t end, const FeatureConfig& config) {
+  constexpr float kNear = 10.5f;  // firings that still count as beside each other
+  const auto n = static_cast<size_t>(config.occlusion_neighbours);
+  for (size_t i = begin; i + 1 < end; ++i) {
+    if (order.steps[i + 1] == order.steps[i]) continue;
+    if (order.time_s[i + 1] - order.time_s[i] > kNear * order.period_s) continue;
+    const bool next_is_farther = order.range_m[i + 1] > order.range_m[i];
+    const size_t first = next_is_farther ? i + 1 : std::max(begin + n, i + 1) - n;
+    const size_t last = next_is_farther ? std::min(i + n, end - 1) : i;
+    for (size_t j = first; j <= last; ++j) order.shadowed[j] = 1;
   }
 }
 
-struct Tester {
-  const Cloud& points_lidar;
-  const FeatureConfig& config;
-  float period_s;
-  float max_sine;  // of the angle between beam and surface normal's plane, i.e. |cos(beam, tangent)|
+struct StraightnessTest {
+  const RingOrder& order;
+  float max_deviation_m;
+  float max_sine;  // |cos(beam, tangent)|, i.e. the sine of the angle of incidence in the ring's direction
 
-  // Straight over `half` neighbours on either side? Distance of the point from the line through the mean of
-  // its neighbours along their chord. Unlike the sum of range differences this does not grow with the angle
-  // of incidence on a plane.
-  bool planar(const Ring& ring, size_t i, int half, Feature& feature) const {
-    const auto h = static_cast<size_t>(half);
-    if (i < h || i + h >= ring.size()) return false;
-    if (ring.time_s[i + h] - ring.time_s[i - h] > (2.0f * static_cast<float>(half) + 3.5f) * period_s)
-      return false;
-    const Vec3 p = points_lidar[ring.index[i]].cast<double>();
-    const Vec3 mean = (ring.prefix_lidar[i + h + 1] - ring.prefix_lidar[i - h] - p) / (2.0 * half);
-    const Vec3 chord = (points_lidar[ring.index[i + h]] - points_lidar[ring.index[i - h]]).cast<double>();
-    const double length = chord.norm();
-    if (length < 1e-4) return false;
-    const Vec3 tangent = chord / length;
-    const Vec3 off = mean - p;
-    const double deviation_m = (off - off.dot(tangent) * tangent).norm();
-    if (deviation_m > config.planar_threshold_m) return false;
-    if (std::abs(tangent.dot(p)) > max_sine * p.norm()) return false;
-    feature = {points_lidar[ring.index[i]], tangent.cast<float>(), 0};
-    return true;
-  }
-
-  // No range step within `half` neighbours.
-  bool smooth(const Ring& ring, size_t i, int half) const {
-    const auto h = static_cast<size_t>(half);
-    if (i < h || i + h >= ring.size()) return false;
-    const auto jump_m = static_cast<float>(config.occlusion_jump_m);
-    for (size_t j = i - h; j < i + h; ++j)
-      if (std::abs(ring.range_m[j + 1] - ring.range_m[j]) > jump_m) return false;
+  // Straight over `half` neighbours on either side, without range step or gap: all lie near the line through
+  // the point along their chord. Unlike the sum of range differences this does not grow with the angle of
+  // incidence on a plane.
+  bool operator()(size_t i, size_t half, size_t begin, size_t end, Feature& feature) const {
+    if (i < begin + half || i + half >= end) return false;
+    const size_t first = i - half, last = i + half;
+    if (order.steps[last] != order.steps[first]) return false;
+    const float longest_s = (2.0f * static_cast<float>(half) + 3.5f) * order.period_s;
+    if (order.time_s[last] - order.time_s[first] > longest_s) return false;
+    const Eigen::Vector3f p = order.points_lidar[i];
+    const Eigen::Vector3f chord = order.points_lidar[last] - order.points_lidar[first];
+    const float length2 = chord.squaredNorm();
+    if (length2 < 1e-8f) return false;
+    const float along_beam = chord.dot(p);
+    if (along_beam * along_beam > max_sine * max_sine * length2 * p.squaredNorm()) return false;
+    const float limit = max_deviation_m * max_deviation_m * length2;
+    for (size_t j = first; j <= last; ++j)
+      if ((order.points_lidar[j] - p).cross(chord).squaredNorm() > limit) return false;
+    feature.point_lidar = p;
+    feature.chord_lidar = chord;
     return true;
   }
 };
@@ -116,27 +116,23 @@ struct Tester {
 
 std::vector<Feature> select_planar_features(const LidarScan& scan, const Cloud& points_lidar, int rings,
                                             const FeatureConfig& config) {
-  std::vector<Ring> by_ring(static_cast<size_t>(rings));
-  for (Ring& ring : by_ring) ring.clear();
-  for (uint32_t i = 0; i < scan.points.size(); ++i)
-    if (scan.points[i].ring < rings) by_ring[scan.points[i].ring].push(i, scan.points[i], points_lidar[i]);
-
-  const float period_s = firing_period_s(by_ring);
-  const auto max_sine = static_cast<float>(std::sin(config.parallel_beam_deg * std::numbers::pi / 180.0));
-  const Tester tester{points_lidar, config, period_s, max_sine};
+  RingOrder order(scan, points_lidar, rings, config.occlusion_jump_m);
+  const StraightnessTest straight{
+      order, static_cast<float>(config.planar_threshold_m),
+      static_cast<float>(std::sin(config.parallel_beam_deg * std::numbers::pi / 180))};
+  const auto half = static_cast<size_t>(config.half_window);
+  const auto short_half = static_cast<size_t>(config.short_half_window);
   std::vector<Feature> features;
-  features.reserve(scan.points.size());
-  for (Ring& ring : by_ring) {
-    mark_shadow_edges(ring, period_s, config);
-    for (size_t i = 0; i < ring.size(); ++i) {
-      if (ring.shadowed[i] || ring.range_m[i] < config.min_range_m) continue;
-      Feature feature;
-      for (const int half : {config.half_window, config.short_half_window})
-        if (tester.smooth(ring, i, half) && tester.planar(ring, i, half, feature)) {
-          feature.ring = scan.points[ring.index[i]].ring;
-          features.push_back(feature);
-          break;
-        }
+  features.reserve(order.index.size());
+  for (size_t ring = 0; ring + 1 < order.begin.size(); ++ring) {
+    const size_t begin = order.begin[ring], end = order.begin[ring + 1];
+    mark_shadow_edges(order, begin, end, config);
+    Feature feature;
+    feature.ring = static_cast<uint16_t>(ring);
+    for (size_t i = begin; i < end; ++i) {
+      if (order.shadowed[i] || order.range_m[i] < config.min_range_m) continue;
+      if (straight(i, half, begin, end, feature) || straight(i, short_half, begin, end, feature))
+        features.push_back(feature);
     }
   }
   return features;
@@ -147,8 +143,8 @@ std::vector<Feature> thin_features(const std::vector<Feature>& features, double 
   KeyIndex seen(features.size() / 2);
   std::vector<Feature> kept;
   for (const Feature& feature : features) {
-    const Eigen::Vector3f& t = feature.tangent_lidar;
-    const unsigned tag = std::abs(t.x()) > std::abs(t.y()) ? 1 : 0;
+    const Eigen::Vector3f& c = feature.chord_lidar;
+    const unsigned tag = std::abs(c.x()) > std::abs(c.y()) ? 1 : 0;
     const size_t before = seen.size();
     seen.insert(voxel_key(feature.point_lidar, inverse, tag));
     if (seen.size() > before) kept.push_back(feature);

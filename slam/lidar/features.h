@@ -13,7 +13,7 @@ namespace vsslam {
 struct FeatureConfig {
   int half_window = 5;        ///< neighbours on either side in the ring
   int short_half_window = 2;  ///< tried where the long window meets an edge: keeps narrow faces (door jambs)
-  double planar_threshold_m = 0.03;  ///< largest distance of a point from the line through its neighbours
+  double planar_threshold_m = 0.03;  ///< largest distance of a neighbour from the line along the chord
   double occlusion_jump_m = 0.3;     ///< range step that makes the farther side a shadow edge
   int occlusion_neighbours = 6;      ///< points dropped on the farther side
   double parallel_beam_deg =
@@ -22,10 +22,10 @@ struct FeatureConfig {
   void fields(Fields& f);
 };
 
-/// A planar point and the direction of its surface along the ring, in the lidar frame.
+/// A planar point and the chord of its window: it runs along the surface, in the ring's direction.
 struct Feature {
   Eigen::Vector3f point_lidar;
-  Eigen::Vector3f tangent_lidar;  ///< unit
+  Eigen::Vector3f chord_lidar;  ///< m; not normalised, since its noise does not grow with its length
   uint16_t ring = 0;
 };
 
@@ -33,7 +33,7 @@ struct Feature {
 std::vector<Feature> select_planar_features(const LidarScan& scan, const Cloud& points_lidar, int rings,
                                             const FeatureConfig& config);
 
-/// At most one feature (the first) per cube of `voxel_m` and per direction of the tangent: surfaces that meet
+/// At most one feature (the first) per cube of `voxel_m` and per direction of the chord: surfaces that meet
 /// at a right angle do not hide each other.
 std::vector<Feature> thin_features(const std::vector<Feature>& features, double voxel_m);
 

@@ -35,7 +35,8 @@ void LidarOdometry::insert_key(const std::vector<Feature>& features, const SE3& 
   constexpr uint32_t kRings = 37;  // lines of different key scans rarely share a bit
   std::vector<MapPoint> points_odom;
   for (const Feature& feature : thin_features(features, config_.map_voxel_m))
-    points_odom.push_back({R * feature.point_lidar + t, kRings * keys_made_ + feature.ring});
+    points_odom.push_back(
+        {R * feature.point_lidar + t, R * feature.chord_lidar, kRings * keys_made_ + feature.ring});
   ++keys_made_;
   keys_odom_.push_back(std::move(points_odom));
   if (keys_odom_.size() > static_cast<size_t>(config_.local_map_keys)) keys_odom_.pop_front();

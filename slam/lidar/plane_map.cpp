@@ -15,87 +15,145 @@ void PlaneMapConfig::fields(Fields& f) {
   f("max_thickness_m", max_thickness_m, positive());
   f("max_normal_sigma_rad", max_normal_sigma_rad, positive());
   f("range_sigma_m", range_sigma_m, positive());
+  f("max_chord_tilt_m", max_chord_tilt_m, positive());
 }
 
 namespace {
 
-// Sums of the points of a cell about its first point.
-struct Moments {
-  Vec3 origin = Vec3::Zero();
-  Vec3 sum = Vec3::Zero();
+// Lower triangle of sum v v^T.
+struct SquareSum {
   double xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
+
+  void add(const Eigen::Vector3f& v) {
+    const double x = v.x(), y = v.y(), z = v.z();
+    xx += x * x, xy += x * y, xz += x * z, yy += y * y, yz += y * z, zz += z * z;
+  }
+  SquareSum operator+(const SquareSum& o) const {
+    return {xx + o.xx, xy + o.xy, xz + o.xz, yy + o.yy, yz + o.yz, zz + o.zz};
+  }
+  Mat3 matrix() const {
+    Mat3 m;
+    m << xx, xy, xz, xy, yy, yz, xz, yz, zz;
+    return m;
+  }
+};
+
+// Sums over the points of one class of a cell, about the cell's first point.
+struct Sums {
+  Vec3 offset = Vec3::Zero();
+  SquareSum square, chord_square;
   int count = 0;
   uint64_t lines = 0;  // one bit per line, modulo 64
 
-  void add(const MapPoint& sample) {
-    const Eigen::Vector3f& point = sample.point_odom;
-    lines |= uint64_t{1} << (sample.line % 64);
-    if (count++ == 0) origin = point.cast<double>();
-    const Vec3 d = point.cast<double>() - origin;
-    sum += d;
-    xx += d.x() * d.x(), xy += d.x() * d.y(), xz += d.x() * d.z();
-    yy += d.y() * d.y(), yz += d.y() * d.z(), zz += d.z() * d.z();
+  void add(const Eigen::Vector3f& from_origin, const MapPoint& point) {
+    offset += from_origin.cast<double>();
+    square.add(from_origin);
+    chord_square.add(point.chord_odom);
+    ++count;
+    lines |= uint64_t{1} << (point.line % 64);
   }
-  Mat3 covariance() const {
-    const Vec3 mean = sum / count;
-    Mat3 c;
-    c << xx, xy, xz, xy, yy, yz, xz, yz, zz;
-    return c / count - mean * mean.transpose();
+  Sums operator+(const Sums& o) const {
+    return {offset + o.offset, square + o.square, chord_square + o.chord_square, count + o.count,
+            lines | o.lines};
   }
-  Vec3 centroid() const { return origin + sum / count; }
 };
 
-// The standard deviation of the normal is sigma / sqrt(count * spread along the shorter side).
-bool fit_plane(const Moments& cell, const PlaneMapConfig& config, Plane& plane) {
-  if (cell.count < config.min_points || std::popcount(cell.lines) < config.min_lines) return false;
+struct CellSums {
+  Eigen::Vector3f origin = Eigen::Vector3f::Zero();
+  Eigen::Vector2d fourfold = Eigen::Vector2d::Zero();  // sum of |chord|^2 (cos 4a, sin 4a), a its heading
+  Sums part[2];
+
+  void add_heading(const Eigen::Vector3f& chord) {
+    const double x = chord.x(), y = chord.y(), length2 = x * x + y * y;
+    if (length2 < 1e-8) return;
+    const double c2 = (x * x - y * y) / length2, s2 = 2 * x * y / length2;
+    fourfold += length2 * Eigen::Vector2d(c2 * c2 - s2 * s2, 2 * c2 * s2);
+  }
+  Eigen::Vector2f axis() const {
+    const double heading = 0.25 * std::atan2(fourfold.y(), fourfold.x());
+    return {static_cast<float>(std::cos(heading)), static_cast<float>(std::sin(heading))};
+  }
+};
+
+// The standard deviation of the normal is sigma / sqrt(count * spread along the shorter side). The chords, whose
+// ends are as noisy as the points, must lie in the plane too.
+bool fit_plane(const Sums& sums, const Eigen::Vector3f& origin, const PlaneMapConfig& config, Plane& plane) {
+  if (sums.count < config.min_points || std::popcount(sums.lines) < config.min_lines) return false;
+  const Vec3 mean = sums.offset / sums.count;
   Eigen::SelfAdjointEigenSolver<Mat3> solver;
-  solver.computeDirect(cell.covariance());
+  solver.computeDirect(sums.square.matrix() / sums.count - mean * mean.transpose());
   const Vec3 spread = solver.eigenvalues();
-  if (!(spread[0] <= config.max_thickness_m * config.max_thickness_m)) return false;
+  const double max_variance = config.max_thickness_m * config.max_thickness_m;
+  if (!(spread[0] <= max_variance)) return false;
   const double variance = std::max(spread[0], config.range_sigma_m * config.range_sigma_m);
-  if (variance > config.max_normal_sigma_rad * config.max_normal_sigma_rad * cell.count * spread[1])
+  if (variance > config.max_normal_sigma_rad * config.max_normal_sigma_rad * sums.count * spread[1])
     return false;
   const Vec3 normal = solver.eigenvectors().col(0).normalized();
-  plane = {normal.cast<float>(), static_cast<float>(normal.dot(cell.centroid()))};
+  if (normal.dot(sums.chord_square.matrix() * normal) > 2.0 * max_variance * sums.count) return false;
+  plane = {normal.cast<float>(), static_cast<float>(normal.dot(origin.cast<double>() + mean))};
   return true;
 }
 
 }  // namespace
 
 void PlaneMap::rebuild(const std::deque<std::vector<MapPoint>>& keys_odom) {
-  levels_.clear();
   std::vector<MapPoint> points;
   for (const auto& key : keys_odom) points.insert(points.end(), key.begin(), key.end());
+  levels_.clear();
   double cell_m = config_.cell_m;
-  std::vector<int> cell_of;
   for (int l = 0; l < config_.levels && !points.empty(); ++l, cell_m *= 0.5) {
     Level& level = levels_.emplace_back();
     level.inverse_cell = static_cast<float>(1.0 / cell_m);
-    level.index.reset(points.size() / 8);
-    std::vector<Moments> cells;
-    cell_of.resize(points.size());
-    for (size_t i = 0; i < points.size(); ++i) {
-      const int cell = cell_of[i] = level.index.insert(voxel_key(points[i].point_odom, level.inverse_cell));
-      if (cells.size() < level.index.size()) cells.emplace_back();
-      cells[static_cast<size_t>(cell)].add(points[i]);
-    }
-    level.planes.resize(cells.size());
-    level.planar.resize(cells.size());
-    for (size_t c = 0; c < cells.size(); ++c) level.planar[c] = fit_plane(cells[c], config_, level.planes[c]);
-    size_t kept = 0;  // what one plane does not explain goes to the next level
-    for (size_t i = 0; i < points.size(); ++i) {
-      const auto c = static_cast<size_t>(cell_of[i]);
-      if (!level.planar[c] && cells[c].count >= config_.min_points) points[kept++] = points[i];
-    }
-    points.resize(kept);
+    build_level(level, points);
   }
 }
 
-const Plane* PlaneMap::find(const Eigen::Vector3f& point_odom) const {
+// Leaves in `points` those that the planes of this level do not explain.
+void PlaneMap::build_level(Level& level, std::vector<MapPoint>& points) const {
+  level.index.reset(points.size() / 8);
+  std::vector<CellSums> sums;
+  std::vector<int> cell_of(points.size());
+  for (size_t i = 0; i < points.size(); ++i) {
+    cell_of[i] = level.index.insert(voxel_key(points[i].point_odom, level.inverse_cell));
+    if (sums.size() < level.index.size()) sums.emplace_back().origin = points[i].point_odom;
+    sums[static_cast<size_t>(cell_of[i])].add_heading(points[i].chord_odom);
+  }
+  level.cells.resize(sums.size());
+  for (size_t c = 0; c < sums.size(); ++c) level.cells[c].axis = sums[c].axis();
+  for (size_t i = 0; i < points.size(); ++i) {
+    const auto c = static_cast<size_t>(cell_of[i]);
+    CellSums& cell = sums[c];
+    cell.part[level.cells[c].chord_class(points[i].chord_odom)].add(points[i].point_odom - cell.origin,
+                                                                    points[i]);
+  }
+  for (size_t c = 0; c < sums.size(); ++c) {
+    Cell& cell = level.cells[c];
+    const CellSums& s = sums[c];
+    if (fit_plane(s.part[0] + s.part[1], s.origin, config_, cell.plane[0])) {
+      cell.plane[1] = cell.plane[0];
+      cell.planar[0] = cell.planar[1] = true;
+    } else {
+      for (const int k : {0, 1}) cell.planar[k] = fit_plane(s.part[k], s.origin, config_, cell.plane[k]);
+    }
+  }
+  size_t kept = 0;
+  for (size_t i = 0; i < points.size(); ++i) {
+    const auto c = static_cast<size_t>(cell_of[i]);
+    const int k = level.cells[c].chord_class(points[i].chord_odom);
+    if (!level.cells[c].planar[k] && sums[c].part[k].count >= config_.min_points) points[kept++] = points[i];
+  }
+  points.resize(kept);
+}
+
+const Plane* PlaneMap::find(const Eigen::Vector3f& point_odom, const Eigen::Vector3f& chord_odom) const {
   for (const Level& level : levels_) {
-    const int cell = level.index.find(voxel_key(point_odom, level.inverse_cell));
-    if (cell < 0) return nullptr;
-    if (level.planar[static_cast<size_t>(cell)]) return &level.planes[static_cast<size_t>(cell)];
+    const int number = level.index.find(voxel_key(point_odom, level.inverse_cell));
+    if (number < 0) return nullptr;
+    const Cell& cell = level.cells[static_cast<size_t>(number)];
+    const int k = cell.chord_class(chord_odom);
+    if (!cell.planar[k]) continue;
+    const bool same_surface = std::abs(cell.plane[k].normal_odom.dot(chord_odom)) <= config_.max_chord_tilt_m;
+    return same_surface ? &cell.plane[k] : nullptr;
   }
   return nullptr;
 }
@@ -103,7 +161,7 @@ const Plane* PlaneMap::find(const Eigen::Vector3f& point_odom) const {
 size_t PlaneMap::plane_count() const {
   size_t count = 0;
   for (const Level& level : levels_)
-    count += static_cast<size_t>(std::count(level.planar.begin(), level.planar.end(), 1));
+    for (const Cell& cell : level.cells) count += static_cast<size_t>(cell.planar[0]) + cell.planar[1];
   return count;
 }
 

@@ -1,6 +1,11 @@
-// The local map: cubes of space with the plane fitted to the points in them, coarse where one plane explains
-// a cube and finer where it does not (in the spirit of Yuan et al., "Efficient and Probabilistic Adaptive
-// Voxel Mapping", RA-L 2022).
+// The local map: cubes of space with the planes fitted to the points in them, coarse where they explain a cube
+// and finer where they do not (in the spirit of Yuan et al., "Efficient and Probabilistic Adaptive Voxel
+// Mapping", RA-L 2022).
+//
+// Where two surfaces meet at a right angle (a door jamb and its wall) a cube holds both. The chords of the
+// scan's rings tell them apart: a cube has a frame of two perpendicular horizontal axes, the one its points'
+// chords fit best, and each point belongs to the axis nearer to its chord. If one plane does not explain the
+// cube, each class may have its own.
 #pragma once
 
 #include <deque>
@@ -14,19 +19,21 @@ namespace vsslam {
 
 struct PlaneMapConfig {
   double cell_m = 0.8;  ///< edge of the coarsest cubes
-  int levels = 4;       ///< each level halves the edge
+  int levels = 3;       ///< each level halves the edge
   int min_points = 10;  ///< of a plane
   int min_lines = 3;    ///< a ring that runs over a corner makes a plane that is not there; three do not
   double max_thickness_m = 0.015;  ///< RMS distance of the points from their plane
   double max_normal_sigma_rad =
-      0.05;                      ///< uncertainty of the normal, from the spread and number of the points
-  double range_sigma_m = 0.007;  ///< points are never believed better than this
+      0.05;                        ///< uncertainty of the normal, from the spread and number of the points
+  double range_sigma_m = 0.007;    ///< points are never believed better than this
+  double max_chord_tilt_m = 0.04;  ///< a point whose chord leaves the plane by more lies on another surface
   void fields(Fields& f);
 };
 
-/// A point and the line of the scan pattern (key scan and ring) that it was sampled on.
+/// A point of a key scan, with the chord of its window and the line of the scan pattern (key scan and ring) that
+/// it was sampled on.
 struct MapPoint {
-  Eigen::Vector3f point_odom;
+  Eigen::Vector3f point_odom, chord_odom;
   uint32_t line = 0;
 };
 
@@ -42,18 +49,29 @@ class PlaneMap {
 
   /// Replaces the content by the points of all key scans. Deterministic: sums run in their order.
   void rebuild(const std::deque<std::vector<MapPoint>>& keys_odom);
-  /// The plane of the coarsest cube around the point that has one; nullptr if none. Never a neighbour's: near
-  /// an edge that is the wrong surface.
-  const Plane* find(const Eigen::Vector3f& point_odom) const;
+  /// The plane of the coarsest cube around the point that has one for its chord; nullptr if none. Never a
+  /// neighbour's: near an edge that is the wrong surface.
+  const Plane* find(const Eigen::Vector3f& point_odom, const Eigen::Vector3f& chord_odom) const;
   size_t plane_count() const;
 
  private:
+  struct Cell {
+    Eigen::Vector2f axis = Eigen::Vector2f::UnitX();  // class 0 runs along it, class 1 across
+    bool planar[2] = {false, false};
+    Plane plane[2];
+    int chord_class(const Eigen::Vector3f& chord) const {
+      const float along = chord.x() * axis.x() + chord.y() * axis.y();
+      const float across = chord.y() * axis.x() - chord.x() * axis.y();
+      return std::abs(along) >= std::abs(across) ? 0 : 1;
+    }
+  };
   struct Level {
     float inverse_cell = 1;
     KeyIndex index;
-    std::vector<Plane> planes;  // by number of the cell
-    std::vector<uint8_t> planar;
+    std::vector<Cell> cells;  // by number of the key
   };
+  void build_level(Level& level, std::vector<MapPoint>& points) const;
+
   PlaneMapConfig config_;
   std::vector<Level> levels_;
 };

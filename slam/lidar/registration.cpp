@@ -33,7 +33,8 @@ Linearised linearise(const std::vector<Feature>& features, const SE3& T_odom_lid
   const Eigen::Vector3f t = T_odom_lidar.translation.cast<float>();
   for (const Feature& feature : features) {
     const Eigen::Vector3f point_odom = R * feature.point_lidar + t;
-    const Plane* plane = map.find(point_odom);
+    const Eigen::Vector3f chord_odom = R * feature.chord_lidar;
+    const Plane* plane = map.find(point_odom, chord_odom);
     if (!plane) continue;
     const double r = plane->normal_odom.dot(point_odom) - plane->distance_m;
     if (std::abs(r) > max_distance_m) continue;
