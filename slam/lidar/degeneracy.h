@@ -22,7 +22,7 @@
 namespace vsslam {
 
 struct DegeneracyConfig {
-  double min_share = 0.005;              ///< l_k below this: degenerate
+  double min_share = 0.01;               ///< l_k below this: degenerate
   double characteristic_length_m = 1.0;  ///< L: an error of 1 rad harms as much as one of L metres
   void fields(Fields& f);
 };
