@@ -10,10 +10,9 @@
 // 1 m / L) along v_k. The translational part sums to 1, since |n| = 1: l_k is the share of the
 // correspondences that see the direction. Doubling the points or the voxels' size leaves it as it is.
 //
-// Fitted normals tilt by at most sigma_n (PlaneMapConfig::max_normal_sigma_rad; usually far less), which
-// alone feigns a share of up to sigma_n^2 in a direction that no surface sees. The threshold must lie above
-// that and below the share of the weakest geometry worth using: an end wall 30 m ahead in a corridor has
-// 0.01, jambs every 4 m about 0.03.
+// Fitted normals tilt by at most sigma_n (PlaneMapConfig::max_normal_sigma_rad), which alone feigns a share of
+// up to sigma_n^2 = 0.0025 in a direction that no surface sees; in an endless corridor with 7 mm of range noise
+// 2e-5 was measured. Door jambs 15 cm deep every 4 m give about 0.02, 10 cm deep ones 0.001, too little to trust.
 #pragma once
 
 #include "core/config.h"

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "tests/slam/drive.h"
 
 namespace vsslam {
@@ -28,6 +30,137 @@ TEST(Slam, HoldsItsPlaceInARoomToMillimetres) {
   for (size_t i = 1; i < driven.reports.size(); ++i) {
     EXPECT_TRUE(driven.reports[i].converged) << i;
     EXPECT_LE(driven.reports[i].degenerate_directions, 1) << i;
+  }
+}
+
+TEST(Slam, KeepsTheWheelsDistanceInAnEndlessCorridor) {
+  DriveOptions options;
+  options.duration_s = 12;
+  options.wheel_scale = 1.02;
+  const Driven driven = drive(corridor(400), weaving_drive(0, 1.0), options);
+  for (const ScanReport& report : driven.reports) EXPECT_GE(report.degenerate_directions, 1) << report.scan;
+  const SE3 error = driven.T_odom_base_true.back().inverse() * driven.reports.back().T_odom_base;
+  EXPECT_NEAR(error.translation.x(), 0.02 * driven.path_m, 0.02);  // nothing else is known along the axis
+  EXPECT_NEAR(error.translation.y(), 0, 0.03);
+}
+
+TEST(Slam, CorrectsTheWheelsWhereJambsAreSeen) {
+  DriveOptions options;
+  options.duration_s = 20;
+  options.wheel_scale = 1.03;
+  const Driven driven = drive(jambed_corridor(150, 4, 0.15), weaving_drive(0, 1.0), options);
+  EXPECT_LT(driven.position_rmse_m, 0.002 * driven.path_m);
+}
+
+class SlamWithPrior : public ::testing::TestWithParam<PriorKind> {};
+TEST_P(SlamWithPrior, HoldsItsPlaceInARoom) {
+  DriveOptions options;
+  options.duration_s = 8;
+  options.config.prior = GetParam();
+  const Driven driven = drive(room(), circle_in_room(), options);
+  EXPECT_LT(driven.position_rmse_m, 0.01);
+  EXPECT_LT(driven.worst_m, 0.05);
+}
+INSTANTIATE_TEST_SUITE_P(All, SlamWithPrior,
+                         ::testing::Values(PriorKind::wheel_imu, PriorKind::imu, PriorKind::wheel));
+
+// Whatever fails, poses stay finite and the room brings the robot back.
+void expect_recovers(DriveOptions options) {
+  options.duration_s = 9;
+  const Driven driven = drive(room(), circle_in_room(), options);
+  for (const ScanReport& report : driven.reports) {
+    EXPECT_TRUE(report.T_odom_base.translation.allFinite());
+    EXPECT_TRUE(report.T_odom_base.rotation.coeffs().allFinite());
+  }
+  const SE3 error = driven.T_odom_base_true.back().inverse() * driven.reports.back().T_odom_base;
+  EXPECT_LT(error.translation.norm(), 0.02);
+  EXPECT_LT(error.angle(), 0.01);
+}
+bool between_s(Time t, double from_s, double to_s) {
+  return t.seconds() >= from_s && t.seconds() < to_s;
+}
+
+TEST(SlamSurvives, TwoSecondsWithoutLidar) {
+  DriveOptions options;
+  options.keep = [](char kind, Time t) { return kind != 'l' || !between_s(t, 4, 6); };
+  expect_recovers(options);
+}
+TEST(SlamSurvives, NoImuAtAll) {
+  DriveOptions options;
+  options.keep = [](char kind, Time) { return kind != 'i'; };
+  expect_recovers(options);
+}
+TEST(SlamSurvives, ImuAndWheelsDropOutForASecond) {
+  DriveOptions options;
+  options.keep = [](char kind, Time t) { return kind == 'l' || !between_s(t, 3, 4); };
+  expect_recovers(options);
+}
+TEST(SlamSurvives, EmptyScans) {
+  const RigCalibration calibration = rig();
+  Slam slam({}, calibration, Method::lvi_sam_no_loop);
+  for (int64_t i = 0; i < 5; ++i) {
+    LidarScan empty;
+    empty.stamp = Time{i * 100'000'000};
+    empty.end = empty.stamp;
+    const ScanReport report = slam.add(empty);
+    EXPECT_TRUE(report.used_prior_only);
+    EXPECT_TRUE(report.T_map_base.translation.allFinite());
+  }
+  slam.finish();
+  EXPECT_EQ(slam.trajectory_map_base().size(), 5u);
+}
+
+TEST(Slam, StartsLevelledByGravity) {
+  DriveOptions options;
+  options.duration_s = 1.5;
+  const Motion tilted = [](double) { return SE3::from_rpy({0.06, -0.04, 0.5}, {0.5, 0.3, 0.2}); };
+  const Driven driven = drive(room(), tilted, options);
+  const Vec3 rpy = driven.reports.front().T_odom_base.rpy();
+  EXPECT_NEAR(rpy.x(), 0.06, 1e-3);
+  EXPECT_NEAR(rpy.y(), -0.04, 1e-3);
+  EXPECT_NEAR(rpy.z(), 0.0, 1e-9);
+  EXPECT_TRUE(driven.reports.front().T_odom_base.translation.isZero());
+}
+
+TEST(Slam, SameInputGivesTheSameBits) {
+  DriveOptions options;
+  options.duration_s = 5;
+  const Driven a = drive(room(), circle_in_room(), options), b = drive(room(), circle_in_room(), options);
+  ASSERT_EQ(a.reports.size(), b.reports.size());
+  for (size_t i = 0; i < a.reports.size(); ++i) {
+    EXPECT_EQ(a.reports[i].T_odom_base.translation, b.reports[i].T_odom_base.translation);
+    EXPECT_EQ(a.reports[i].T_odom_base.rotation.coeffs(), b.reports[i].T_odom_base.rotation.coeffs());
+    EXPECT_EQ(a.reports[i].information.H, b.reports[i].information.H);
+  }
+}
+
+TEST(Slam, LoopsMoveTheMapButNotTheOdometry) {
+  DriveOptions options;
+  options.duration_s = 5;
+  const Driven alone = drive(room(), circle_in_room(), options);
+  options.method = Method::lvi_sam;
+  const Driven with_loops = drive(room(), circle_in_room(), options);
+  for (size_t i = 0; i < alone.reports.size(); ++i)
+    EXPECT_EQ(alone.reports[i].T_odom_base.translation, with_loops.reports[i].T_odom_base.translation);
+  ASSERT_EQ(alone.trajectory_map_base.size(), alone.reports.size());
+  for (size_t i = 0; i < alone.reports.size(); ++i)  // without loops the map frame is the odom frame
+    EXPECT_LT(
+        (alone.trajectory_map_base[i].pose.translation - alone.reports[i].T_odom_base.translation).norm(),
+        1e-9);
+}
+
+TEST(Slam, MakesKeyScansByDistanceAndAngle) {
+  DriveOptions options;
+  options.duration_s = 9;
+  const Driven driven = drive(room(), circle_in_room(), options);
+  ASSERT_GE(driven.keys.size(), 5u);
+  for (size_t i = 1; i < driven.keys.size(); ++i) {
+    const SE3 T = driven.keys[i - 1].T_odom_base.inverse() * driven.keys[i].T_odom_base;
+    EXPECT_TRUE(T.translation.norm() >= 1.0 || T.angle() >= 0.2) << i;
+    EXPECT_LT(T.translation.norm(), 1.2);
+    EXPECT_EQ(driven.keys[i].id, static_cast<int>(i));
+    EXPECT_FALSE(driven.keys[i].features_lidar.empty());
+    EXPECT_FALSE(driven.keys[i].points_lidar.empty());
   }
 }
 

@@ -1,0 +1,159 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "slam/inertial/gyro_bias.h"
+#include "slam/inertial/imu_track.h"
+#include "slam/inertial/motion_prior.h"
+#include "slam/inertial/rest_alignment.h"
+#include "slam/inertial/wheel_track.h"
+#include "tests/slam/analytic_scene.h"
+
+namespace vsslam {
+namespace {
+
+using namespace testing_scene;
+
+Time ms(int64_t t) {
+  return Time{t * 1'000'000};
+}
+
+// Circle of 2 m radius at 1 m/s, from the start.
+SE3 circle(double t) {
+  return SE3::from_rpy({0, 0, 0.5 * t}, {2 * std::sin(0.5 * t), 2 * (1 - std::cos(0.5 * t)), 0});
+}
+
+class PriorOfKind : public ::testing::TestWithParam<PriorKind> {};
+
+TEST_P(PriorOfKind, PredictsACircle) {
+  const RigCalibration calibration = rig();
+  const auto prior = make_motion_prior(GetParam(), {}, calibration);
+  prior->start({SE3(), Vec3::Zero(), 1e-3, false});
+  Noise quiet;
+  quiet.imu = false;
+  Wheels wheels(calibration);
+  for (int64_t t = 0; t <= 1400; t += 10) {
+    prior->add(imu_sample(circle, calibration, ms(t), quiet));
+    prior->add(wheels.advance(circle, ms(t)));
+    if (t >= 100 && t % 100 == 0 && t <= 1200)  // the scan of t - 100 is known when it has ended
+      prior->correct({ms(t - 100), circle(0.001 * static_cast<double>(t - 100))});
+  }
+  const MotionPath path = prior->path(ms(1100), ms(1400));
+  for (const int64_t t : {1150, 1255, 1400}) {
+    const SE3 T_begin_t = circle(1.1).inverse() * circle(0.001 * static_cast<double>(t));
+    const SE3 error = T_begin_t.inverse() * path.at(ms(t));
+    EXPECT_LT(error.translation.norm(), 5e-3) << t;
+    EXPECT_LT(error.angle(), 2e-3) << t;
+  }
+}
+
+TEST_P(PriorOfKind, SurvivesWithoutAnySample) {
+  const auto prior = make_motion_prior(GetParam(), {}, rig());
+  prior->start({});
+  EXPECT_TRUE(prior->path(ms(0), ms(100)).end_pose().translation.isZero());
+  for (int64_t t = 0; t <= 500; t += 100) prior->correct({ms(t), circle(0.001 * static_cast<double>(t))});
+  const SE3 T = prior->path(ms(500), ms(600)).end_pose();  // continues at the odometry's velocity
+  const SE3 error = (circle(0.5).inverse() * circle(0.6)).inverse() * T;
+  EXPECT_LT(error.translation.norm(), 1e-3);
+  EXPECT_LT(error.angle(), 1e-3);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, PriorOfKind,
+                         ::testing::Values(PriorKind::wheel_imu, PriorKind::imu, PriorKind::wheel,
+                                           PriorKind::constant_velocity));
+
+TEST(MotionPath, InterpolatesAndExtrapolates) {
+  MotionPath path(ms(0));
+  path.append(ms(10), SE3(Quat::Identity(), {1, 0, 0}));
+  path.append(ms(10), SE3(Quat::Identity(), {9, 0, 0}));  // not newer: ignored
+  path.append(ms(20), SE3(Quat::Identity(), {3, 0, 0}));
+  EXPECT_NEAR(path.at(ms(5)).translation.x(), 0.5, 1e-12);
+  EXPECT_NEAR(path.at(ms(15)).translation.x(), 2.0, 1e-12);
+  EXPECT_NEAR(path.at(ms(25)).translation.x(), 4.0, 1e-12);
+  EXPECT_NEAR(path.at(ms(-5)).translation.x(), 0.0, 1e-12);
+}
+
+TEST(RestAlignment, FindsUpAndTheGyroscopesBias) {
+  RigCalibration calibration = rig();
+  calibration.imu.T_base_imu = SE3::from_rpy({0.1, -0.2, 1.0}, {0, 0, 0.1});
+  const Motion still = [](double) { return SE3::from_rpy({0.05, -0.08, 0.7}, {1, 2, 0}); };
+  std::deque<ImuSample> samples;
+  for (int64_t t = 0; t < 1000; t += 10) samples.push_back(imu_sample(still, calibration, ms(t)));
+  const RestAlignment rest = align_at_rest(samples, calibration.imu, {});
+  EXPECT_TRUE(rest.at_rest);
+  const Vec3 rpy = SE3(rest.q_odom_base, Vec3::Zero()).rpy();
+  EXPECT_NEAR(rpy.x(), 0.05, 3e-4);
+  EXPECT_NEAR(rpy.y(), -0.08, 3e-4);
+  EXPECT_NEAR(rpy.z(), 0.0, 1e-9);
+  EXPECT_LT((rest.gyro_bias_radps - Vec3::Constant(0.002)).norm(),
+            4 * std::sqrt(3.0) * rest.gyro_bias_sigma_radps);
+}
+
+TEST(RestAlignment, UsesTheDevicesOrientationWhenMoving) {
+  const RigCalibration calibration = rig();
+  std::deque<ImuSample> samples;
+  for (int64_t t = 0; t < 200; t += 10) {
+    ImuSample sample = imu_sample(circle, calibration, ms(t));
+    sample.q_earth_imu = SE3::from_rpy({0.03, 0.02, 2.0}, Vec3::Zero()).rotation;
+    samples.push_back(sample);
+  }
+  const RestAlignment rest = align_at_rest(samples, calibration.imu, {});
+  EXPECT_FALSE(rest.at_rest);
+  EXPECT_TRUE(rest.gyro_bias_radps.isZero());
+  const Vec3 rpy = SE3(rest.q_odom_base, Vec3::Zero()).rpy();
+  EXPECT_NEAR(rpy.x(), 0.03, 1e-9);
+  EXPECT_NEAR(rpy.y(), 0.02, 1e-9);
+}
+
+TEST(RestAlignment, IsLevelWithoutSamples) {
+  EXPECT_TRUE(align_at_rest({}, {}, {}).q_odom_base.isApprox(Quat::Identity()));
+}
+
+TEST(ImuTrack, RemovesASpikeAndSkipsNonsense) {
+  ImuTrack track({});
+  for (int64_t t = 0; t <= 100; t += 10) {
+    ImuSample sample;
+    sample.stamp = ms(t);
+    sample.gyro_radps = {0.1, t == 50 ? 7.0 : 0.2, 0.3};
+    if (t == 70) sample.gyro_radps.x() = std::numeric_limits<double>::quiet_NaN();
+    track.add(sample);
+  }
+  EXPECT_EQ(track.samples().size(), 10u);
+  EXPECT_NEAR(track.at(ms(50))->gyro_radps.y(), 0.2, 1e-12);
+  EXPECT_NEAR(track.at(ms(70))->gyro_radps.x(), 0.1, 1e-12);  // bridged
+  EXPECT_FALSE(track.at(ms(200)).has_value());
+  EXPECT_FALSE(track.at(ms(-100)).has_value());
+}
+
+TEST(WheelTrack, TurnsByTheEffectiveTrack) {
+  WheelCalibration wheels;
+  wheels.wheel_radius_m = 0.1;
+  wheels.effective_track_m = 0.5;
+  WheelTrack track(wheels, 0.05);
+  track.add({ms(0), 0, 0});
+  track.add({ms(20), 1.0, 2.0});
+  EXPECT_NEAR(track.at(ms(20))->forward_m, 0.15, 1e-12);
+  EXPECT_NEAR(track.at(ms(20))->yaw_rad, 0.2, 1e-12);
+  EXPECT_NEAR(track.at(ms(10))->forward_m, 0.075, 1e-12);
+  EXPECT_NEAR(track.at(ms(30))->forward_m, 0.225, 1e-12);  // continued
+  EXPECT_FALSE(track.at(ms(80)).has_value());
+}
+
+TEST(GyroBias, ConvergesInObservedDirectionsOnly) {
+  GyroBias bias(1e-5, 5e-4);
+  bias.start(Vec3::Zero(), 0.01);
+  const Vec3 truth(0.004, -0.003, 0.002);
+  Mat3 observed = Mat3::Identity();
+  observed(0, 0) = 0;  // blind about x
+  for (int i = 0; i < 2000; ++i) bias.correct(-(truth - bias.bias_radps()) * 0.1, observed, 0.1);
+  EXPECT_NEAR(bias.bias_radps().x(), 0, 1e-12);
+  EXPECT_NEAR(bias.bias_radps().y(), truth.y(), 1e-4);
+  EXPECT_NEAR(bias.bias_radps().z(), truth.z(), 1e-4);
+  const Vec3 before = bias.bias_radps();
+  bias.correct({0, 0.2, 0}, Mat3::Identity(), 0.1);  // a slip of the registration
+  EXPECT_EQ(bias.bias_radps(), before);
+}
+
+}  // namespace
+}  // namespace vsslam

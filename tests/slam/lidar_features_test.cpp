@@ -1,0 +1,152 @@
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "slam/lidar/features.h"
+#include "slam/lidar/undistort.h"
+#include "slam/lidar/voxel_hash.h"
+#include "tests/slam/analytic_scene.h"
+
+namespace vsslam {
+namespace {
+
+using namespace testing_scene;
+
+const Noise kQuiet{.range_sigma_m = 0, .gyro_bias_radps = 0, .imu = false, .seed = 1};
+
+std::vector<Feature> features_of(const LidarScan& s, const FeatureConfig& config = {}) {
+  return select_planar_features(s, undistort(s, MotionPath(s.stamp), rig().lidar.T_base_lidar), 16, config);
+}
+LidarScan scan_at_origin(const Scene& scene, const Noise& noise = kQuiet) {
+  return scan(
+      scene,
+      [](double) {
+        return SE3(Quat::Identity(), {0, 0, 0.2});
+      },
+      rig(), Time{}, noise);
+}
+
+TEST(Undistort, PutsAMovingScanWhereAStillOneWouldBe) {
+  const Motion fast = [](double t) {
+    return SE3::from_rpy({0.05 * std::sin(9 * t), 0.1 * t, 2.0 * t}, {1.5 * t, -0.4 * t, 0.3});
+  };
+  const RigCalibration calibration = rig();
+  const Time stamp = Time::from_seconds(0.3);
+  const LidarScan s = scan(room(), fast, calibration, stamp, kQuiet, 8);
+  MotionPath path(stamp);
+  for (int i = 1; i <= 20; ++i)
+    path.append(stamp + Duration{i * 5'000'000}, fast(0.3).inverse() * fast(0.3 + 0.005 * i));
+  const Cloud points_lidar = undistort(s, path, calibration.lidar.T_base_lidar);
+  ASSERT_EQ(points_lidar.size(), s.points.size());
+  // On a still sensor each point lies on the scene's surface in its direction.
+  const SE3 T_scene_lidar = fast(0.3) * calibration.lidar.T_base_lidar;
+  double worst_m = 0;
+  size_t hidden = 0;
+  for (const Eigen::Vector3f& point : points_lidar) {
+    const Vec3 p = point.cast<double>();
+    const double range_m =
+        cast_ray(room(), T_scene_lidar.translation, T_scene_lidar.rotation * p.normalized());
+    const double error_m = std::abs(range_m - p.norm());
+    if (error_m > 0.05)
+      ++hidden;  // seen past an edge while moving
+    else
+      worst_m = std::max(worst_m, error_m);
+  }
+  EXPECT_LT(worst_m, 0.002);
+  EXPECT_LT(hidden, points_lidar.size() / 50);
+}
+
+TEST(Undistort, RotationAloneIsNotEnough) {
+  const Motion forward = [](double t) { return SE3(Quat::Identity(), {1.5 * t, 0, 0.2}); };
+  const LidarScan s = scan(room(), forward, rig(), Time{}, kQuiet, 8);
+  MotionPath path(Time{});
+  path.append(s.end, forward(s.end.seconds()));
+  const Cloud moved = undistort(s, path, rig().lidar.T_base_lidar),
+              still = undistort(s, MotionPath(Time{}), rig().lidar.T_base_lidar);
+  EXPECT_NEAR((moved.back() - still.back()).x(), 1.5 * s.end.seconds(), 0.002);
+  EXPECT_LT((moved.front() - still.front()).norm(), 1e-4);
+}
+
+TEST(Features, AreOnSurfacesAndAwayFromShadows) {
+  // A pillar before a wall: the wall is dropped beside the pillar's shadow.
+  Scene scene = hollow({-8, -8, 0}, {8, 8, 3});
+  scene.push_back({{2.0, -0.2, 0}, {2.4, 0.2, 3}});
+  const auto features = features_of(scan_at_origin(scene));
+  EXPECT_GT(features.size(), 15000u);
+  const double shadow = std::atan2(0.2, 1.9);  // edge of the shadow seen from the LiDAR at x = 0.1
+  for (const Feature& f : features) {
+    const double azimuth = std::abs(std::atan2(f.point_lidar.y(), f.point_lidar.x()));
+    if (f.point_lidar.x() > 7) {
+      EXPECT_GT(azimuth, shadow + 5 * 0.00347) << f.point_lidar.transpose();
+    }
+  }
+}
+
+TEST(Features, RejectParallelBeamsAndNearPoints) {
+  const auto features = features_of(scan_at_origin(corridor(400)));
+  for (const Feature& f : features) {
+    EXPECT_GE(f.point_lidar.norm(), 1.0);
+    const bool wall = std::abs(std::abs(f.point_lidar.y()) - 1.2) < 1e-3;
+    // 80 deg from the normal at 1.2 m is 6.8 m along the wall for a level ring, more for a steep one.
+    if (wall) {
+      EXPECT_LT(std::abs(f.point_lidar.x()), 9.0);
+    }
+  }
+  FeatureConfig generous;
+  generous.parallel_beam_deg = 89;
+  EXPECT_GT(features_of(scan_at_origin(corridor(400)), generous).size(), features.size() + 500);
+}
+
+TEST(Features, KeepNarrowFaces) {
+  const auto features = features_of(scan_at_origin(jambed_corridor(50, 4, 0.15), {}));
+  size_t on_jamb = 0;
+  for (const Feature& f : features) {
+    const float x = f.point_lidar.x() + 0.1f;  // jambs start at x = -49 + 4 i
+    const float to_face = std::abs(std::remainder(x + 49.0f, 4.0f));
+    if (to_face < 0.02f && std::abs(f.chord_lidar.y()) > 0.8f * f.chord_lidar.norm() &&
+        std::abs(f.point_lidar.y()) > 1.03f)
+      ++on_jamb;
+  }
+  EXPECT_GT(on_jamb, 150u);
+}
+
+TEST(Features, ToleratesEmptyAndTinyScans) {
+  EXPECT_TRUE(features_of(LidarScan{}).empty());
+  LidarScan tiny;
+  tiny.end = Time{1000};
+  tiny.points.resize(3, {2, 0, 0, 1, 3, 0});
+  tiny.points.push_back({2, 0, 0, 1, 200, 0});  // a ring that the calibration does not know
+  EXPECT_TRUE(features_of(tiny).empty());
+}
+
+TEST(Thinning, KeepsOnePerVoxelAndDirection) {
+  std::vector<Feature> features;
+  for (int i = 0; i < 100; ++i)
+    features.push_back({{0.05f + 0.001f * static_cast<float>(i), 0.05f, 0.05f},
+                        {i % 2 ? 1.0f : 0.0f, i % 2 ? 0.0f : 1.0f, 0.0f},
+                        0});
+  const auto kept = thin_features(features, 0.2);
+  ASSERT_EQ(kept.size(), 2u);
+  EXPECT_EQ(kept[0].point_lidar, features[0].point_lidar);
+  EXPECT_EQ(kept[1].point_lidar, features[1].point_lidar);
+}
+
+TEST(KeyIndex, NumbersKeysInOrderOfInsertion) {
+  KeyIndex index(4);
+  std::set<uint64_t> seen;
+  for (uint64_t i = 0; i < 5000; ++i) {
+    const uint64_t key = (i * 2654435761u) % 1777;
+    const int expected_new = static_cast<int>(seen.size());
+    const bool is_new = seen.insert(key).second;
+    const int number = index.insert(key);
+    if (is_new) {
+      EXPECT_EQ(number, expected_new);
+    }
+    EXPECT_EQ(index.find(key), number);
+  }
+  EXPECT_EQ(index.size(), seen.size());
+  EXPECT_EQ(index.find(999999), -1);
+}
+
+}  // namespace
+}  // namespace vsslam

@@ -1,0 +1,146 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+
+#include "slam/lidar/lidar_odometry.h"
+#include "slam/lidar/registration.h"
+#include "slam/lidar/undistort.h"
+#include "tests/slam/analytic_scene.h"
+
+namespace vsslam {
+namespace {
+
+using namespace testing_scene;
+
+Motion resting(const SE3& T_scene_base) {
+  return [=](double) { return T_scene_base; };
+}
+SE3 at_x(double x_m) {
+  return {Quat::Identity(), {x_m, 0.1, 0.2}};
+}
+
+std::vector<Feature> features_at(const Scene& scene, const SE3& T_scene_base, Time stamp = {}) {
+  const LidarScan s = scan(scene, resting(T_scene_base), rig(), stamp);
+  return select_planar_features(s, undistort(s, MotionPath(stamp), rig().lidar.T_base_lidar), 16, {});
+}
+
+// A local map from scans along the axis; the odom frame is the scene's.
+struct Mapped {
+  LidarOdometryConfig config;
+  LidarOdometry odometry{config};
+  explicit Mapped(const Scene& scene, int scans = 12) {
+    for (int i = 0; i < scans; ++i)
+      odometry.insert_key(features_at(scene, at_x(i - 0.5 * scans), ms(i)), at_x(i - 0.5 * scans),
+                          rig().lidar.T_base_lidar);
+  }
+  static Time ms(int i) { return Time{1'000'000 * int64_t{i}}; }
+  Registration align(const Scene& scene, const SE3& T_scene_base, const Vec6& offset) const {
+    const auto features = thin_features(features_at(scene, T_scene_base, ms(500)), config.voxel_m);
+    return odometry.align(features, T_scene_base * rig().lidar.T_base_lidar * SE3::exp(offset));
+  }
+};
+
+TEST(PointToPlane, RowIsTheDerivativeOfTheResidual) {
+  const SE3 T = SE3::from_rpy({0.3, -0.2, 1.1}, {2, -1, 0.5});
+  const Vec3 p(4, -3, 1.5), n = Vec3(0.2, -0.9, 0.4).normalized();
+  const Vec6 row = point_to_plane_row(p, T.rotation.conjugate() * n);
+  constexpr double h = 1e-6;
+  for (int k = 0; k < 6; ++k) {
+    const Vec6 step = h * Vec6::Unit(k);
+    const double slope = n.dot(T * SE3::exp(step) * p - T * SE3::exp(-step) * p) / (2 * h);
+    EXPECT_NEAR(row[k], slope, 1e-8) << k;
+  }
+}
+
+TEST(Registration, FindsThePoseInARoom) {
+  const Mapped mapped(room(), 4);
+  Vec6 offset;
+  offset << 0.01, -0.01, 0.03, 0.08, -0.06, 0.04;
+  const Registration r = mapped.align(room(), at_x(0.3), offset);
+  EXPECT_TRUE(r.converged);
+  EXPECT_EQ(r.degeneracy.directions, 0);
+  const SE3 error = (at_x(0.3) * rig().lidar.T_base_lidar).inverse() * r.T_odom_lidar;
+  EXPECT_LT(error.translation.norm(), 0.003);
+  EXPECT_LT(error.angle(), 0.001);
+}
+
+TEST(Registration, KeepsThePriorAlongAnEndlessCorridorOnly) {
+  const Scene scene = corridor(400);
+  const Mapped mapped(scene);
+  Vec6 offset;
+  offset << 0.005, -0.005, 0.01, 0.07, -0.05, 0.03;
+  const Registration r = mapped.align(scene, at_x(0.5), offset);
+  ASSERT_EQ(r.degeneracy.directions, 1);
+  EXPECT_LT(r.degeneracy.shares[0], 2e-4);  // what fitted normals feign, far below the threshold
+  EXPECT_GT(r.information.translation.alpha(), 0.999);
+  EXPECT_GT(std::abs(r.information.translation.eigenvectors.col(0).x()), 0.999);
+  const SE3 error = (at_x(0.5) * rig().lidar.T_base_lidar).inverse() * r.T_odom_lidar;
+  EXPECT_NEAR(error.translation.x(), 0.07, 0.005);  // the prior's error stays
+  EXPECT_NEAR(error.translation.y(), 0, 0.003);
+  EXPECT_NEAR(error.translation.z(), 0, 0.004);
+  EXPECT_LT(error.angle(), 0.0015);
+}
+
+TEST(Registration, SeesAlongACorridorWithJambs) {
+  const Scene scene = jambed_corridor(60, 4, 0.15);
+  const Mapped mapped(scene);
+  const Registration r = mapped.align(scene, at_x(0.5), (Vec6() << 0, 0, 0, 0.05, 0, 0).finished());
+  EXPECT_EQ(r.degeneracy.directions, 0);
+  const SE3 error = (at_x(0.5) * rig().lidar.T_base_lidar).inverse() * r.T_odom_lidar;
+  EXPECT_LT(error.translation.norm(), 0.01);
+}
+
+TEST(Registration, LeavesThePriorAloneWithoutAMap) {
+  const LidarOdometry odometry{LidarOdometryConfig{}};
+  const SE3 prior = at_x(3);
+  const Registration r = odometry.align(features_at(room(), at_x(0)), prior);
+  EXPECT_TRUE(r.used_prior_only);
+  EXPECT_EQ(r.degeneracy.directions, 6);
+  EXPECT_EQ(r.T_odom_lidar.translation, prior.translation);
+}
+
+TEST(Degeneracy, ShareDoesNotDependOnTheNumberOfPoints) {
+  Mat6 H = Mat6::Zero();
+  for (int i = 0; i < 30; ++i) {
+    const Vec6 row = point_to_plane_row({0.3 * i - 4, 1.0, 0.1 * i}, Vec3(0.1, 1, 0.05 * i).normalized());
+    H += row * row.transpose();
+  }
+  const Degeneracy once = detect_degeneracy(H, 30, {}), often = detect_degeneracy(17 * H, 17 * 30, {});
+  EXPECT_LT((once.shares - often.shares).norm(), 1e-9);
+  EXPECT_EQ(once.directions, often.directions);
+}
+
+TEST(Degeneracy, SolvesInTheObservedSubspaceOnly) {
+  // Walls left and right, floor: nothing along x.
+  Mat6 H = Mat6::Zero();
+  for (int i = -10; i <= 10; ++i)
+    for (const auto& [p, n] : {std::pair<Vec3, Vec3>{{1.0 * i, 1.2, 0.3}, Vec3::UnitY()},
+                               {{1.0 * i, -1.2, 0.9}, -Vec3::UnitY()},
+                               {{1.0 * i, 0.4, -0.6}, Vec3::UnitZ()}}) {
+      const Vec6 row = point_to_plane_row(p, n);
+      H += row * row.transpose();
+    }
+  const Degeneracy found = detect_degeneracy(H, 63, {});
+  ASSERT_EQ(found.directions, 1);
+  Vec6 x;
+  x << 0.01, 0.02, -0.01, 0.5, 0.1, -0.2;
+  const Vec6 solved = found.solve(H, H * x);
+  EXPECT_NEAR(solved[3], 0, 1e-9);
+  x[3] = 0;
+  EXPECT_LT((solved - x).norm(), 1e-9);
+  EXPECT_NEAR(found.observed_translation()(0, 0), 0, 1e-9);
+  EXPECT_NEAR(found.observed_translation()(1, 1), 1, 1e-9);
+  EXPECT_TRUE(found.observed_rotation().isApprox(Mat3::Identity(), 1e-9));
+}
+
+TEST(Information, BlocksOfARoomAndOfAPlane) {
+  Mat6 H = Mat6::Zero();
+  H.diagonal() << 4, 9, 16, 1, 2, 10;
+  const Information info = analyse_information(H);
+  EXPECT_NEAR(info.translation.alpha(), 0.9, 1e-12);
+  EXPECT_NEAR(info.rotation.alpha(), 0.75, 1e-12);
+  EXPECT_NEAR(analyse_information(Mat6::Zero()).translation.alpha(), 1.0, 1e-12);
+}
+
+}  // namespace
+}  // namespace vsslam
