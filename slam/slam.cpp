@@ -1,8 +1,8 @@
 #include "slam/slam.h"
 
-#include <deque>
 #include <utility>
 
+#include "slam/inertial/imu_track.h"
 #include "slam/inertial/rest_alignment.h"
 #include "slam/lidar/undistort.h"
 #include "slam/map/map_cloud.h"
@@ -29,7 +29,7 @@ struct Slam::Impl {
   LidarOdometry odometry;
   LoopCloser loop_closer;
   PoseGraph graph;
-  std::deque<ImuSample> imu_before_start;
+  ImuTrack imu_before_start;
   std::vector<KeyScan> keys;
   std::vector<LoopRecord> loops;
   std::vector<StampedPose> scans_odom_base;
@@ -43,7 +43,8 @@ struct Slam::Impl {
         clock(stage_clock),
         prior(make_motion_prior(config.prior, config.inertial, rig)),
         odometry(config.odometry),
-        loop_closer(config.loop, method, rig.lidar, stage_clock) {}
+        loop_closer(config.loop, method, rig.lidar, stage_clock),
+        imu_before_start(track_limits(config.inertial)) {}
 
   bool started() const { return !scans_odom_base.empty(); }
   SE3 start_pose();
@@ -106,7 +107,7 @@ ScanReport Slam::Impl::add(const LidarScan& scan) {
 
 // Base at the origin, yaw 0, gravity along -z.
 SE3 Slam::Impl::start_pose() {
-  const RestAlignment rest = align_at_rest(imu_before_start, rig.imu, config.inertial);
+  const RestAlignment rest = align_at_rest(imu_before_start.samples(), rig.imu, config.inertial);
   const InitialState state{SE3(rest.q_odom_base, Vec3::Zero()), rest.gyro_bias_radps,
                            rest.gyro_bias_sigma_radps, rest.at_rest};
   prior->start(state);
@@ -191,7 +192,7 @@ Slam::Slam(const SlamConfig& config, const RigCalibration& rig, Method method, S
 Slam::~Slam() = default;
 
 void Slam::add(const ImuSample& sample) {
-  if (!impl_->started()) impl_->imu_before_start.push_back(sample);
+  if (!impl_->started()) impl_->imu_before_start.add(sample);
   impl_->prior->add(sample);
 }
 void Slam::add(const WheelSample& sample) {

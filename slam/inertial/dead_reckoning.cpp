@@ -9,7 +9,7 @@ DeadReckoning::DeadReckoning(const InertialConfig& config, const RigCalibration&
     : use_gyro_(use_gyro),
       use_wheels_(use_wheels),
       T_base_imu_(rig.imu.T_base_imu),
-      imu_({config.spike_gyro_radps, config.spike_accel_mps2, config.max_gap_s}),
+      imu_(track_limits(config)),
       wheels_(rig.wheels, config.max_gap_s),
       gyro_bias_(rig.imu.gyro_bias_walk_radps2_rthz, config.lidar_rotation_sigma_rad) {}
 

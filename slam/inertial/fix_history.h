@@ -1,4 +1,4 @@
-// The last two poses of the odometry and the velocity between them: what any prior falls back on.
+// The last pose of the odometry and the velocity up to it: what any prior falls back on.
 #pragma once
 
 #include <optional>
@@ -9,21 +9,23 @@ namespace vsslam {
 
 class FixHistory {
  public:
+  /// The velocity is smoothed by half. An error e_k of a pose enters the next scan's undistortion as velocity,
+  /// and from there its pose, e_k+1 = -(e_k - e_k-1) / 2 unsmoothed, which rings for ever (a root at -1).
   void add(const OdometryFix& fix) {
-    before_ = last_;
+    if (last_ && fix.stamp > last_->stamp) {
+      const Vec6 motion = (last_->T_odom_base.inverse() * fix.T_odom_base).log();
+      const Vec6 twist = motion / seconds_between(last_->stamp, fix.stamp);
+      twist_ = 0.5 * (twist_ + twist);
+    }
     last_ = fix;
   }
   const std::optional<OdometryFix>& last() const { return last_; }
-  const std::optional<OdometryFix>& before() const { return before_; }
-  /// Twist of the base, body frame, [rad/s; m/s]; zero until there are two fixes.
-  Vec6 twist() const {
-    if (!before_ || before_->stamp >= last_->stamp) return Vec6::Zero();
-    const SE3 T_before_last = before_->T_odom_base.inverse() * last_->T_odom_base;
-    return T_before_last.log() / seconds_between(before_->stamp, last_->stamp);
-  }
+  /// Of the base, body frame, [rad/s; m/s]; zero until there are two fixes.
+  const Vec6& twist() const { return twist_; }
 
  private:
-  std::optional<OdometryFix> before_, last_;
+  std::optional<OdometryFix> last_;
+  Vec6 twist_ = Vec6::Zero();
 };
 
 }  // namespace vsslam

@@ -7,7 +7,7 @@ namespace vsslam {
 ImuPrior::ImuPrior(const InertialConfig& config, const RigCalibration& rig)
     : config_(config),
       imu_calibration_(rig.imu),
-      imu_({config.spike_gyro_radps, config.spike_accel_mps2, config.max_gap_s}),
+      imu_(track_limits(config)),
       gyro_bias_(rig.imu.gyro_bias_walk_radps2_rthz, config.lidar_rotation_sigma_rad) {}
 
 void ImuPrior::start(const InitialState& state) {

@@ -20,6 +20,10 @@ void replace_spike(const Vec3& before, Vec3& middle, const Vec3& after, double l
 
 }  // namespace
 
+ImuTrackLimits track_limits(const InertialConfig& config) {
+  return {config.spike_gyro_radps, config.spike_accel_mps2, config.max_gap_s};
+}
+
 void ImuTrack::add(const ImuSample& sample) {
   if (!sample.gyro_radps.allFinite() || !sample.accel_mps2.allFinite()) return;
   if (!samples_.empty() && sample.stamp <= samples_.back().stamp) return;

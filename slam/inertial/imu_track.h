@@ -6,14 +6,18 @@
 
 #include "core/samples.h"
 #include "core/se3.h"
+#include "slam/inertial/motion_prior.h"
 
 namespace vsslam {
 
+/// See InertialConfig.
 struct ImuTrackLimits {
   double spike_gyro_radps = 0.5;
   double spike_accel_mps2 = 20.0;
   double max_gap_s = 0.05;
 };
+
+ImuTrackLimits track_limits(const InertialConfig& config);
 
 class ImuTrack {
  public:
@@ -22,6 +26,7 @@ class ImuTrack {
   /// Ignores samples that are not finite or not newer than the last. A single sample far from both of its
   /// neighbours is replaced by the median of the three.
   void add(const ImuSample& sample);
+  void clear() { samples_.clear(); }
   /// Keeps the last sample at or before `stamp`.
   void forget_before(Time stamp);
 

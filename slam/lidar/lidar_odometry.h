@@ -14,7 +14,7 @@
 
 namespace vsslam {
 
-/// Defaults are for indoors; outdoors voxel_m 0.4, map.cell_m 1.6.
+/// Defaults are for indoors; outdoors voxel_m 0.4.
 struct LidarOdometryConfig {
   FeatureConfig features;
   double voxel_m = 0.2;         ///< thinning of the features that are registered and kept with key scans

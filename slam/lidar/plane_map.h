@@ -18,8 +18,8 @@
 namespace vsslam {
 
 struct PlaneMapConfig {
-  double cell_m = 0.8;  ///< edge of the coarsest cubes
-  int levels = 3;       ///< each level halves the edge
+  double cell_m = 1.6;  ///< edge of the coarsest cubes
+  int levels = 4;       ///< each level halves the edge
   int min_points = 10;  ///< of a plane
   int min_lines = 3;    ///< a ring that runs over a corner makes a plane that is not there; three do not
   double max_thickness_m = 0.015;  ///< RMS distance of the points from their plane

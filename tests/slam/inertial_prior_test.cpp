@@ -52,7 +52,7 @@ TEST_P(PriorOfKind, SurvivesWithoutAnySample) {
   const auto prior = make_motion_prior(GetParam(), {}, rig());
   prior->start({});
   EXPECT_TRUE(prior->path(ms(0), ms(100)).end_pose().translation.isZero());
-  for (int64_t t = 0; t <= 500; t += 100) prior->correct({ms(t), circle(0.001 * static_cast<double>(t))});
+  for (int64_t t = -1000; t <= 500; t += 100) prior->correct({ms(t), circle(0.001 * static_cast<double>(t))});
   const SE3 T = prior->path(ms(500), ms(600)).end_pose();  // continues at the odometry's velocity
   const SE3 error = (circle(0.5).inverse() * circle(0.6)).inverse() * T;
   EXPECT_LT(error.translation.norm(), 1e-3);

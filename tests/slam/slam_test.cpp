@@ -62,7 +62,8 @@ TEST_P(SlamWithPrior, HoldsItsPlaceInARoom) {
   EXPECT_LT(driven.worst_m, 0.05);
 }
 INSTANTIATE_TEST_SUITE_P(All, SlamWithPrior,
-                         ::testing::Values(PriorKind::wheel_imu, PriorKind::imu, PriorKind::wheel));
+                         ::testing::Values(PriorKind::wheel_imu, PriorKind::imu, PriorKind::wheel,
+                                           PriorKind::constant_velocity));
 
 // Whatever fails, poses stay finite and the room brings the robot back.
 void expect_recovers(DriveOptions options) {
@@ -90,9 +91,24 @@ TEST(SlamSurvives, NoImuAtAll) {
   options.keep = [](char kind, Time) { return kind != 'i'; };
   expect_recovers(options);
 }
+TEST(SlamSurvives, NoWheelsAtAll) {
+  DriveOptions options;
+  options.keep = [](char kind, Time) { return kind != 'w'; };
+  expect_recovers(options);
+}
 TEST(SlamSurvives, ImuAndWheelsDropOutForASecond) {
   DriveOptions options;
   options.keep = [](char kind, Time t) { return kind == 'l' || !between_s(t, 3, 4); };
+  expect_recovers(options);
+}
+TEST(SlamSurvives, SpikesAndNonsenseFromTheImu) {
+  DriveOptions options;
+  options.corrupt_imu = [](ImuSample& sample) {
+    const int64_t n = sample.stamp.ns / 10'000'000;
+    if (n % 37 == 5) sample.gyro_radps = Vec3::Constant(7.8);
+    if (n % 53 == 7) sample.gyro_radps.y() = std::numeric_limits<double>::quiet_NaN();
+    if (n % 41 == 9) sample.accel_mps2 = Vec3::Constant(-200);
+  };
   expect_recovers(options);
 }
 TEST(SlamSurvives, EmptyScans) {
