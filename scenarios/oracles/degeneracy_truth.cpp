@@ -2,41 +2,33 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <numbers>
-#include <tuple>
 #include <vector>
+
+#include "slam/lidar/voxel_hash.h"
 
 namespace vsslam {
 
 namespace {
 
-/// A place and the side that a surface there faces: one point is kept of each, so that a voxel with a corner
-/// in it counts for every wall of the corner.
-using Cell = std::tuple<int32_t, int32_t, int32_t, int32_t>;
-
-int32_t facing(const Vec3f& normal) {
+/// 0..5: the axis that a normal leans to most, and its sign.
+unsigned facing(const Vec3f& normal) {
   Eigen::Index axis = 0;
   normal.cwiseAbs().maxCoeff(&axis);
-  return static_cast<int32_t>(2 * axis) + (normal[axis] < 0 ? 1 : 0);
+  return static_cast<unsigned>(2 * axis) + (normal[axis] < 0 ? 1u : 0u);
 }
 
-Cell cell_of(const PointTruth& point, double voxel_m) {
-  const Eigen::Vector3i voxel = (point.position_lidar.cast<double>() / voxel_m).array().floor().cast<int>();
-  return {voxel.x(), voxel.y(), voxel.z(), facing(point.normal_lidar)};
-}
-
-/// Indices of the first point of each cell, in order of the points.
+/// One point of each voxel and facing, the first: a voxel with a corner in it counts for every wall of the
+/// corner. Indices in order of the points.
 std::vector<size_t> thin(const std::vector<PointTruth>& points, double voxel_m) {
-  std::vector<std::pair<Cell, size_t>> cells;
-  cells.reserve(points.size());
-  for (size_t i = 0; i < points.size(); ++i) cells.emplace_back(cell_of(points[i], voxel_m), i);
-  std::sort(cells.begin(), cells.end());
-  const auto same_cell = [](const auto& a, const auto& b) { return a.first == b.first; };
-  cells.erase(std::unique(cells.begin(), cells.end(), same_cell), cells.end());
+  const auto inverse = static_cast<float>(1.0 / voxel_m);
+  KeyIndex seen(points.size() / 8);
   std::vector<size_t> kept;
-  for (const auto& [cell, index] : cells) kept.push_back(index);
-  std::sort(kept.begin(), kept.end());
+  for (size_t i = 0; i < points.size(); ++i) {
+    const auto number = static_cast<size_t>(
+        seen.insert(voxel_key(points[i].position_lidar, inverse, facing(points[i].normal_lidar))));
+    if (number == kept.size()) kept.push_back(i);
+  }
   return kept;
 }
 
