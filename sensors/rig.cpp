@@ -18,7 +18,7 @@ struct Rig::Impl {
         moving(world, e.objects),
         lidar(c.sensors.lidar, e, seed, raycaster),
         imu(c.sensors.imu, c.mounts.imu.T_base_sensor(), seed),
-        wheels(c.sensors.wheels),
+        wheels(c.sensors.wheels, seed),
         clocks(e.clocks, seed),
         spikes(seed, "events.imu_spikes") {}
 

@@ -3,11 +3,20 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/rng.h"
+
 namespace vsslam {
 
 void WheelEncoderConfig::fields(Fields& f) {
   f("rate_hz", rate_hz, between(1, 1000));
   f("ticks_per_turn", ticks_per_turn, non_negative());
+  f("radius_sigma", radius_sigma, between(0, 0.1));
+}
+
+WheelEncoder::WheelEncoder(const WheelEncoderConfig& config, uint64_t seed) : config_(config) {
+  const RandomStream radius(seed, "wheel radius");
+  left_scale_ = 1.0 / (1.0 + config.radius_sigma * radius.normal(0));
+  right_scale_ = 1.0 / (1.0 + config.radius_sigma * radius.normal(1));
 }
 
 Time WheelEncoder::stamp(int64_t index) const {
@@ -26,7 +35,7 @@ WheelMeasurement WheelEncoder::measure(int64_t index, const WheelState& state) c
     return step_rad > 0 ? std::floor(angle_rad / step_rad) * step_rad : angle_rad;
   };
   WheelMeasurement m;
-  m.sample = {stamp(index), counted(state.left_rad), counted(state.right_rad)};
+  m.sample = {stamp(index), counted(left_scale_ * state.left_rad), counted(right_scale_ * state.right_rad)};
   m.true_stamp = stamp(index);
   m.slip_left_mps = state.slip_left_mps;
   m.slip_right_mps = state.slip_right_mps;

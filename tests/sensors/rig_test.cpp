@@ -238,7 +238,8 @@ TEST(Rig, LibraryLoadsAndSurvivesSaving) {
 TEST(WheelEncoder, CountsTicks) {
   WheelEncoderConfig config;
   config.ticks_per_turn = 100;
-  const WheelEncoder encoder(config);
+  config.radius_sigma = 0;
+  const WheelEncoder encoder(config, 1);
   const double tick = 2 * std::numbers::pi / 100;
   for (int64_t i : {0, 7, 500}) {
     const WheelState truth = rolling(encoder.stamp(i));
@@ -249,7 +250,26 @@ TEST(WheelEncoder, CountsTicks) {
     EXPECT_LT(truth.left_rad, m.sample.left_rad + tick);
   }
   config.ticks_per_turn = 0;
-  EXPECT_EQ(WheelEncoder(config).measure(500, rolling(Time{10'000'000'000})).sample.right_rad, 35.0);
+  EXPECT_EQ(WheelEncoder(config, 1).measure(500, rolling(Time{10'000'000'000})).sample.right_rad, 35.0);
+}
+
+TEST(WheelEncoder, TyresDifferFromTheirDataSheet) {
+  WheelEncoderConfig config;
+  config.ticks_per_turn = 0;
+  config.radius_sigma = 0.01;
+  double sum = 0, squares = 0;
+  const int seeds = 2000;
+  for (int seed = 0; seed < seeds; ++seed) {
+    const WheelEncoder encoder(config, static_cast<uint64_t>(seed));
+    const WheelSample at_5_s = encoder.measure(250, rolling(Time{5'000'000'000})).sample,
+                      at_10_s = encoder.measure(500, rolling(Time{10'000'000'000})).sample;
+    EXPECT_NEAR(at_10_s.right_rad / at_5_s.right_rad, 2.0, 1e-12);  // a scale, the same all the time
+    const double radius_error = 35.0 / at_10_s.right_rad - 1.0;
+    sum += radius_error;
+    squares += radius_error * radius_error;
+  }
+  EXPECT_NEAR(sum / seeds, 0, 4 * 0.01 / std::sqrt(seeds));
+  EXPECT_NEAR(std::sqrt(squares / seeds), 0.01, 4 * 0.01 / std::sqrt(2.0 * seeds));
 }
 
 }  // namespace
