@@ -58,7 +58,7 @@ void score_trajectories(const RunRecord& record, Metrics& m) {
   m.odometry_ate_rmse_m = score(record.estimation.slam().trajectory_odom_base(), truth).ate_rmse_m;
   const Cloud map = record.estimation.slam().map_cloud(record.scenario.map_voxel_m);
   if (!map.empty())
-    m.map_error_mean_m = map_error(map, estimate.alignment.T_truth_estimate, record.surface).mean_m;
+    m.map_error_mean_m = map_error(map, estimate.T_truth_estimate, record.surface).mean_m;
 }
 
 Scenario scenario_of(const RunRecord& record) {

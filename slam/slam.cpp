@@ -75,10 +75,10 @@ ScanReport Slam::Impl::add(const LidarScan& scan) {
   // 2 undistort: all points to the scan's stamp
   Cloud points_lidar = timed("undistort", [&] { return undistort(scan, motion, rig.lidar.T_base_lidar); });
   // 3 features: planar points, thinned
-  const auto features = timed("features", [&] {
-    return select_planar_features(scan, points_lidar, rig.lidar.rings, config.odometry.features);
+  const LidarOdometryConfig& settings = config.odometry;
+  const auto thin = timed("features", [&] {
+    return select_thin_features(scan, points_lidar, rig.lidar.rings, settings.features, settings.voxel_m);
   });
-  const auto thin = timed("thin", [&] { return thin_features(features, config.odometry.voxel_m); });
   // 4 register: point to plane against the local map; blind directions keep the prior
   const Registration registration =
       timed("register", [&] { return odometry.align(thin, T_odom_base_prior * rig.lidar.T_base_lidar); });
@@ -90,7 +90,11 @@ ScanReport Slam::Impl::add(const LidarScan& scan) {
   report.information = registration.information;
   if (is_key) {
     report.key = static_cast<int>(keys.size());
-    timed("map", [&] { return add_key(report, features, thin, std::move(points_lidar)); });
+    const auto dense = timed("features_of_key", [&] {
+      return select_thin_features(scan, points_lidar, rig.lidar.rings, settings.features,
+                                  settings.map_voxel_m);
+    });
+    timed("map", [&] { return add_key(report, dense, thin, std::move(points_lidar)); });
     // 7 ... and looks for loops, which correct all key scans
     close_loops(scan.end);
   }

@@ -48,4 +48,17 @@ Similarity align_points(std::span<const Vec3> estimate, std::span<const Vec3> tr
   return result;
 }
 
+SE3 align_poses(std::span<const SE3> estimate, std::span<const SE3> truth) {
+  Mat3 rotations = Mat3::Zero();
+  Vec3 sum_estimate = Vec3::Zero(), sum_truth = Vec3::Zero();
+  for (size_t i = 0; i < estimate.size(); ++i) {
+    rotations += truth[i].matrix3() * estimate[i].matrix3().transpose();
+    sum_estimate += estimate[i].translation;
+    sum_truth += truth[i].translation;
+  }
+  Vec3 unused;
+  const Mat3 R = best_rotation(rotations, unused);
+  return {Quat(R), (sum_truth - R * sum_estimate) / static_cast<double>(estimate.size())};
+}
+
 }  // namespace vsslam

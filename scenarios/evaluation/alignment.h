@@ -26,4 +26,9 @@ struct Similarity {
 /// the minimisers (for a single point: a translation).
 Similarity align_points(std::span<const Vec3> estimate, std::span<const Vec3> truth, bool with_scale);
 
+/// T_truth_estimate from positions and orientations: the rotation is the chordal mean of R_truth_i R_estimate_i^T,
+/// the translation joins the centroids. Unlike align_points it is determined on a straight line too. Spans of
+/// the same length, at least one pose.
+SE3 align_poses(std::span<const SE3> estimate, std::span<const SE3> truth);
+
 }  // namespace vsslam

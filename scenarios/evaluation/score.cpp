@@ -145,6 +145,7 @@ TrajectoryScore score(std::span<const StampedPose> estimate, std::span<const Sta
                         (matched_truth.front().inverse() * matched_truth.back()).translation)
                            .norm();
 
+  result.T_truth_estimate = align_poses(matched_estimate, matched_truth);
   result.alignment = align(matched_estimate, matched_truth, options.alignment);
   for (SE3& pose : matched_estimate) pose = result.alignment * pose;
   score_absolute(matched_estimate, matched_truth, result);

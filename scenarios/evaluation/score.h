@@ -40,6 +40,7 @@ struct TrajectoryScore {
   double end_error_m = 0;
   double path_length_m = 0;  ///< of the truth, over associated poses
   Similarity alignment;      ///< T_world_map, and the scale if it was asked for
+  SE3 T_truth_estimate;      ///< by align_poses, for maps: determined on straight paths too
   std::vector<StampPair> matches;
   std::vector<double> errors_m;  ///< per match, after alignment
 };

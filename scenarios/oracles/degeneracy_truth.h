@@ -16,8 +16,8 @@ struct DegeneracyTruthOptions {
   /// planes move against the points per m, or per rad, of motion along the direction. For translations it is the
   /// share of the points that see the direction, the same measure that the estimator's detector takes of its own
   /// correspondences; equal thresholds judge how well it measures, not how bold it is.
-  double translation_threshold = 0.005;
-  double rotation_threshold_m2 = 0.005;
+  double translation_threshold = 0.01;
+  double rotation_threshold_m2 = 0.01;
 };
 
 struct DegeneracyTruth {

@@ -29,7 +29,7 @@ struct MapError {
   size_t points = 0;  ///< that were measured
 };
 
-/// T_world_map: SE(3) alignment of the trajectories (TrajectoryScore::alignment). Of larger maps every n-th
+/// T_world_map: alignment of the trajectories (TrajectoryScore::T_truth_estimate). Of larger maps every n-th
 /// point counts.
 MapError map_error(const Cloud& points_map, const SE3& T_world_map, const SurfaceDistance& surface,
                    size_t max_points = 20'000);

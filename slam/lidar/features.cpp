@@ -114,41 +114,94 @@ struct StraightnessTest {
 
 }  // namespace
 
-std::vector<Feature> select_planar_features(const LidarScan& scan, const Cloud& points_lidar, int rings,
-                                            const FeatureConfig& config) {
-  RingOrder order(scan, points_lidar, rings, config.occlusion_jump_m);
+namespace {
+
+uint64_t thinning_key(const Eigen::Vector3f& point, const Eigen::Vector3f& chord, float inverse_voxel) {
+  return voxel_key(point, inverse_voxel, std::abs(chord.x()) > std::abs(chord.y()) ? 1 : 0);
+}
+
+// Which features have been kept, by voxel and direction of the chord.
+struct Thinning {
+  KeyIndex seen;
+  float inverse_voxel;
+
+  Thinning(size_t expected, double voxel_m)
+      : seen(expected), inverse_voxel(static_cast<float>(1.0 / voxel_m)) {}
+
+  bool has(const Eigen::Vector3f& point, const Eigen::Vector3f& chord) const {
+    return seen.find(thinning_key(point, chord, inverse_voxel)) >= 0;
+  }
+  bool add(const Feature& feature) {
+    const size_t before = seen.size();
+    seen.insert(thinning_key(feature.point_lidar, feature.chord_lidar, inverse_voxel));
+    return seen.size() > before;
+  }
+};
+
+// Calls keep(feature) for each planar point; skips a point unseen if skip(i, begin, end) says so.
+template <class Skip, class Keep>
+void for_each_planar(RingOrder& order, const FeatureConfig& config, const Skip& skip, const Keep& keep) {
   const StraightnessTest straight{
       order, static_cast<float>(config.planar_threshold_m),
       static_cast<float>(std::sin(config.parallel_beam_deg * std::numbers::pi / 180))};
   const auto half = static_cast<size_t>(config.half_window);
   const auto short_half = static_cast<size_t>(config.short_half_window);
-  std::vector<Feature> features;
-  features.reserve(order.index.size());
   for (size_t ring = 0; ring + 1 < order.begin.size(); ++ring) {
     const size_t begin = order.begin[ring], end = order.begin[ring + 1];
     mark_shadow_edges(order, begin, end, config);
     Feature feature;
     feature.ring = static_cast<uint16_t>(ring);
     for (size_t i = begin; i < end; ++i) {
-      if (order.shadowed[i] || order.range_m[i] < config.min_range_m) continue;
+      if (order.shadowed[i] || order.range_m[i] < config.min_range_m || skip(i, begin, end)) continue;
       if (straight(i, half, begin, end, feature) || straight(i, short_half, begin, end, feature))
-        features.push_back(feature);
+        keep(feature);
     }
   }
+}
+
+}  // namespace
+
+std::vector<Feature> select_planar_features(const LidarScan& scan, const Cloud& points_lidar, int rings,
+                                            const FeatureConfig& config) {
+  RingOrder order(scan, points_lidar, rings, config.occlusion_jump_m);
+  std::vector<Feature> features;
+  features.reserve(order.index.size());
+  for_each_planar(
+      order, config, [](size_t, size_t, size_t) { return false; },
+      [&](const Feature& feature) { features.push_back(feature); });
   return features;
 }
 
-std::vector<Feature> thin_features(const std::vector<Feature>& features, double voxel_m) {
-  const auto inverse = static_cast<float>(1.0 / voxel_m);
-  KeyIndex seen(features.size() / 2);
+std::vector<Feature> select_thin_features(const LidarScan& scan, const Cloud& points_lidar, int rings,
+                                          const FeatureConfig& config, double voxel_m) {
+  RingOrder order(scan, points_lidar, rings, config.occlusion_jump_m);
+  Thinning thinning(order.index.size() / 8, voxel_m);
   std::vector<Feature> kept;
-  for (const Feature& feature : features) {
-    const Eigen::Vector3f& c = feature.chord_lidar;
-    const unsigned tag = std::abs(c.x()) > std::abs(c.y()) ? 1 : 0;
-    const size_t before = seen.size();
-    seen.insert(voxel_key(feature.point_lidar, inverse, tag));
-    if (seen.size() > before) kept.push_back(feature);
-  }
+  // The test of straightness is the dear part. Whatever it says, a point is dropped if its voxel has a
+  // feature of either direction that the point could have.
+  const auto taken = [&](size_t i, size_t half, size_t begin, size_t end) {
+    if (i < begin + half || i + half >= end) return true;  // cannot be straight over this window
+    const Eigen::Vector3f chord = order.points_lidar[i + half] - order.points_lidar[i - half];
+    return thinning.has(order.points_lidar[i], chord);
+  };
+  const auto half = static_cast<size_t>(config.half_window);
+  const auto short_half = static_cast<size_t>(config.short_half_window);
+  for_each_planar(
+      order, config,
+      [&](size_t i, size_t begin, size_t end) {
+        return taken(i, half, begin, end) && taken(i, short_half, begin, end);
+      },
+      [&](const Feature& feature) {
+        if (thinning.add(feature)) kept.push_back(feature);
+      });
+  return kept;
+}
+
+std::vector<Feature> thin_features(const std::vector<Feature>& features, double voxel_m) {
+  Thinning thinning(features.size() / 2, voxel_m);
+  std::vector<Feature> kept;
+  for (const Feature& feature : features)
+    if (thinning.add(feature)) kept.push_back(feature);
   return kept;
 }
 

@@ -213,5 +213,16 @@ TEST(Score, NoiseOfKnownSizeIsFoundAgain) {
   EXPECT_NEAR(score(estimate, truth).ate_rmse_m, 0.05 * std::sqrt(3.0), 0.002);
 }
 
+// Positions on a line leave the roll about it open; orientations settle it.
+TEST(AlignPoses, IsDeterminedOnAStraightLine) {
+  const SE3 T_world_map = SE3::from_rpy({0.3, -0.2, 2.0}, {5, -7, 1});
+  std::vector<SE3> estimate, truth;
+  for (int i = 0; i < 50; ++i) {
+    estimate.push_back(SE3(Quat::Identity(), {0.1 * i, 0, 0}));
+    truth.push_back(T_world_map * estimate.back());
+  }
+  EXPECT_LT((align_poses(estimate, truth).matrix4() - T_world_map.matrix4()).norm(), 1e-12);
+}
+
 }  // namespace
 }  // namespace vsslam

@@ -131,6 +131,24 @@ TEST(Thinning, KeepsOnePerVoxelAndDirection) {
   EXPECT_EQ(kept[1].point_lidar, features[1].point_lidar);
 }
 
+TEST(Thinning, WhileSelectingGivesTheSame) {
+  for (const LidarScan& s :
+       {scan_at_origin(jambed_corridor(50, 4, 0.15), {}), scan_at_origin(jambed_corridor(50, 4, 0.15))}) {
+    const Cloud points_lidar = undistort(s, MotionPath(s.stamp), rig().lidar.T_base_lidar);
+    for (double voxel_m : {0.1, 0.2, 0.8}) {
+      const auto expected = thin_features(select_planar_features(s, points_lidar, 16, {}), voxel_m);
+      const auto kept = select_thin_features(s, points_lidar, 16, {}, voxel_m);
+      ASSERT_EQ(kept.size(), expected.size());
+      ASSERT_GT(kept.size(), 100u);
+      for (size_t i = 0; i < kept.size(); ++i) {
+        EXPECT_EQ(kept[i].point_lidar, expected[i].point_lidar);
+        EXPECT_EQ(kept[i].chord_lidar, expected[i].chord_lidar);
+        EXPECT_EQ(kept[i].ring, expected[i].ring);
+      }
+    }
+  }
+}
+
 TEST(KeyIndex, NumbersKeysInOrderOfInsertion) {
   KeyIndex index(4);
   std::set<uint64_t> seen;
