@@ -371,7 +371,9 @@ std::string full_path(const std::string& path, const std::vector<std::string>& k
   if (tails.size() == 1) return tails.front();
   if (tails.size() > 1)
     throw InputError(fmt::format("--set {}: ambiguous, one of: {}", path, join(tails)));
-  return path;  // a list item or an optional section; a wrong key is reported when it is loaded
+  // A list item, an optional section or a wrong key, below what the rest of the path names. Loading reports it.
+  const size_t dot = path.rfind('.');
+  return dot == std::string::npos ? path : full_path(path.substr(0, dot), known) + path.substr(dot);
 }
 
 void apply(YAML::Node root, const Override& override_, const std::vector<std::string>& known) {

@@ -121,6 +121,19 @@ TEST(Config, OverridesTakeUnambiguousTails) {
   EXPECT_NE(error_of("{}", {{"count.x", "3"}}), "");
 }
 
+TEST(Config, AMistypedTailIsLookedUpWhereTheRestOfItPoints) {
+  struct Whole {
+    Outer outer;
+    void fields(Fields& f) { f("outer", outer); }
+  } whole;
+  try {
+    load_config_text("{}", "x.yaml", whole, {}, {{"inner.gian", "9"}});
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("did you mean gain?"), std::string::npos) << e.what();
+  }
+}
+
 TEST(Config, ErrorLeavesTheConfigAsItWas) {
   Outer o;
   EXPECT_THROW(load_config_text("count: 7\nnope: 1\n", "x.yaml", o), InputError);
