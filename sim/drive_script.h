@@ -1,11 +1,10 @@
 // The `drive` section of a scenario: where the robot starts and what it does, step by step.
 //
 //   drive:
-//     start: {route: ring, s_m: 3.0}          # or {x_m: 1, y_m: 2, yaw_deg: 90}; default: where the first
-//     path begins steps:
+//     start: {route: ring, s_m: 3.0}   # or {x_m: 1, y_m: 2, yaw_deg: 90}; default: where the first path begins
+//     steps:
 //       - rest: {duration_s: 3}
-//       - follow: {route: ring, speed_mps: 1.0, laps: 1.1, direction: counterclockwise, last_lap_offset_m:
-//       0.4}
+//       - follow: {route: ring, laps: 1.1, direction: counterclockwise, last_lap_offset_m: 0.4}
 //       - turn: {angle_deg: -90, rate_radps: 0.5}
 //       - follow: {waypoints: [{x_m: 3, y_m: 0}, {x_m: 3, y_m: 8}]}
 //       - loop: {times: 2, steps: [{turn: {angle_deg: 180}}, {rest: {duration_s: 1}}]}
