@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/errors.h"
+#include "tests/scratch.h"
 
 namespace vsslam {
 namespace {
@@ -10,7 +11,7 @@ namespace {
 namespace fs = std::filesystem;
 
 TEST(Files, AppearsOnlyWhenCommitted) {
-  const fs::path dir = fs::path(testing::TempDir()) / "files_test";
+  const fs::path dir = scratch_folder() / "files_test";
   fs::remove_all(dir);
   {
     AtomicFile file(dir / "a" / "x.txt");
@@ -25,7 +26,7 @@ TEST(Files, AppearsOnlyWhenCommitted) {
 
 TEST(Files, FullDiskIsAResourceError) {
   if (!fs::exists("/dev/full")) GTEST_SKIP();
-  const fs::path dir = fs::path(testing::TempDir()) / "files_full";
+  const fs::path dir = scratch_folder() / "files_full";
   fs::create_directories(dir);
   EXPECT_THROW(write_file("/proc/nowhere/x", "1"), ResourceError);
   fs::remove_all(dir);

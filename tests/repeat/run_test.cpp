@@ -8,6 +8,7 @@
 #include "core/ordered_parallel.h"
 #include "scenarios/runner.h"
 #include "scenarios/wall_clock.h"
+#include "tests/scratch.h"
 
 namespace vsslam {
 namespace {
@@ -20,7 +21,7 @@ Scenario short_scenario(const std::string& setting = "map_voxel_m=0.2") {
 }
 
 fs::path run_into(const std::string& name, Scenario scenario, int threads) {
-  const fs::path out = fs::path(testing::TempDir()) / name;
+  const fs::path out = scratch_folder() / name;
   fs::remove_all(out);
   set_thread_count(threads);
   Runner runner(scenario, {.out = out, .threads = threads});

@@ -10,6 +10,7 @@
 #include "core/files.h"
 #include "scenarios/progress.h"
 #include "slam/loop/loop_config.h"
+#include "tests/scratch.h"
 
 namespace vsslam {
 namespace {
@@ -27,7 +28,7 @@ Outcome call(const std::vector<std::string>& arguments) {
   return {code, out.str(), err.str()};
 }
 std::string temporary(const std::string& name, const std::string& text) {
-  const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / name;
+  const std::filesystem::path path = scratch_folder() / name;
   write_file(path, text);
   return path.string();
 }
@@ -126,7 +127,7 @@ TEST(Cli, OptimizePrintsTheContract) {
 }
 
 TEST(Cli, WorldIsWrittenAndDescribed) {
-  const std::string glb = (std::filesystem::path(testing::TempDir()) / "room.glb").string();
+  const std::string glb = (scratch_folder() / "room.glb").string();
   const Outcome made =
       call({"world", "room", "--set", "length_m=11", "--set", "textures=false", "--out", glb});
   ASSERT_EQ(made.code, kDone) << made.err;

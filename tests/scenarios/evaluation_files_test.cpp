@@ -9,6 +9,7 @@
 #include "core/files.h"
 #include "scenarios/evaluation/csv.h"
 #include "scenarios/evaluation/trajectory_file.h"
+#include "tests/scratch.h"
 
 namespace vsslam {
 namespace {
@@ -17,7 +18,7 @@ using testing::HasSubstr;
 using testing::Not;
 
 std::filesystem::path file(const char* name) {
-  return std::filesystem::path(testing::TempDir()) / fmt::format("vsslam_files_test_{}", ::getpid()) / name;
+  return scratch_folder() / name;
 }
 
 template <class Call>

@@ -21,6 +21,7 @@
 #include "scenarios/report/ply_points.h"
 #include "scenarios/results_columns.h"
 #include "slam/lidar/cloud.h"
+#include "tests/scratch.h"
 
 namespace vsslam {
 namespace {
@@ -29,11 +30,6 @@ namespace fs = std::filesystem;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
-
-/// Tests run in parallel, several builds of them too.
-fs::path scratch() {
-  return fs::path(testing::TempDir()) / fmt::format("vsslam_report_test_{}", ::getpid());
-}
 
 constexpr double kWidth_m = 42, kDepth_m = 26;
 
@@ -182,7 +178,7 @@ constexpr const char* kTiming =
 
 /// A small result folder with everything in it.
 fs::path make_result(const std::string& name, const std::string& method = "lvi-sam", double drift = 1) {
-  const fs::path folder = scratch() / name;
+  const fs::path folder = scratch_folder() / name;
   fs::remove_all(folder);
   const Drive drive = ring_drive(1500, drift);
   write_file(folder / "metrics.json", metrics_text(method, 0.18 * drift));
@@ -356,13 +352,13 @@ TEST(Report, MissingFilesAreNamed) {
     fs::remove(folder / name);
     EXPECT_THAT(error_of(folder), HasSubstr(name));
   }
-  EXPECT_THAT(error_of(fs::path(testing::TempDir()) / "no_such_result"), HasSubstr("no_such_result"));
+  EXPECT_THAT(error_of(scratch_folder() / "no_such_result"), HasSubstr("no_such_result"));
 }
 
 TEST(Report, ComparesSideBySide) {
   const std::vector<fs::path> folders = {make_result("one", "lvi-sam", 2),
                                          make_result("two", "sc-lvi-sam", 1)};
-  const fs::path html = scratch() / "comparison.html";
+  const fs::path html = scratch_folder() / "comparison.html";
   write_comparison(folders, html);
   const std::string page = read_file(html);
   EXPECT_THAT(page, HasSubstr("<th scope=\"row\">ATE RMSE</th><td>0.360</td><td class=\"best\">0.180</td>"));
@@ -373,7 +369,7 @@ TEST(Report, ComparesSideBySide) {
 }
 
 fs::path ply(const std::string& content) {
-  const fs::path path = scratch() / "x.ply";
+  const fs::path path = scratch_folder() / "x.ply";
   write_file(path, content);
   return path;
 }

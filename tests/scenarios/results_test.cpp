@@ -9,6 +9,7 @@
 #include "scenarios/map_file.h"
 #include "scenarios/metrics.h"
 #include "scenarios/pending_folder.h"
+#include "tests/scratch.h"
 
 namespace vsslam {
 namespace {
@@ -16,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 fs::path fresh_folder(const std::string& name) {
-  const fs::path folder = fs::path(testing::TempDir()) / name;
+  const fs::path folder = scratch_folder() / name;
   fs::remove_all(folder);
   fs::create_directories(folder);
   return folder;

@@ -8,6 +8,7 @@
 #include "core/errors.h"
 #include "core/files.h"
 #include "scenarios/library_files.h"
+#include "tests/scratch.h"
 
 namespace vsslam {
 namespace {
@@ -41,7 +42,7 @@ INSTANTIATE_TEST_SUITE_P(All, LibraryScenario, ::testing::ValuesIn(library_names
                          [](const auto& info) { return info.param; });
 
 TEST(Scenario, TakesItsNameFromTheFileAndItsRestFromTheBase) {
-  const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "my_scenario.yaml";
+  const std::filesystem::path path = scratch_folder() / "my_scenario.yaml";
   write_file(path, "base: quick_room\nseeds: [3, 4]\nlighting: {preset: low}\n");
   const Scenario base = load_scenario("quick_room");
   const Scenario scenario = load_scenario(path.string(), {{"max_duration_s", "9"}});

@@ -12,6 +12,7 @@
 
 #include "core/errors.h"
 #include "sensors/lidar.h"
+#include "tests/scratch.h"
 #include "tests/sensors/shapes.h"
 
 namespace vsslam {
@@ -75,7 +76,7 @@ TEST(VelodynePackets, BadBytesAreErrorsWithAPlace) {
 }
 
 TEST(VelodynePackets, TruncatedFilesAreErrors) {
-  const std::string path = testing::TempDir() + "packets.bin";
+  const std::string path = scratch_folder() / "packets.bin";
   const std::vector<uint8_t> bytes = packet_bytes(0);
   const auto write = [&](size_t size) {
     std::ofstream(path, std::ios::binary)

@@ -6,6 +6,7 @@
 #include "core/errors.h"
 #include "core/files.h"
 #include "slam/graph/pose_graph.h"
+#include "tests/scratch.h"
 #include "tests/slam/graph_worlds.h"
 
 namespace vsslam {
@@ -62,7 +63,7 @@ TEST(G2o, RoundTripIsExact) {
   PoseGraph graph = measure(surface_world(5, 12, 4, 2), 0.05, 0.1, true);
   graph.fix_node(3);
   graph.optimize({});
-  const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "round_trip.g2o";
+  const std::filesystem::path path = scratch_folder() / "round_trip.g2o";
   graph.write_g2o(path);
   const PoseGraph back = PoseGraph::read_g2o(path);
   EXPECT_EQ(read_file(path), back.g2o_text());

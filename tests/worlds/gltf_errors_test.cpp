@@ -7,6 +7,7 @@
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/rng.h"
+#include "tests/scratch.h"
 #include "tests/worlds/gltf_text.h"
 #include "worlds/gltf.h"
 #include "worlds/room.h"
@@ -17,7 +18,7 @@ namespace {
 using nlohmann::json;
 
 std::string error_of(const std::string& bytes, const std::string& name = "broken.gltf") {
-  const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / name;
+  const std::filesystem::path path = scratch_folder() / name;
   write_file(path, bytes);
   try {
     read_gltf(path);
@@ -197,7 +198,7 @@ TEST(GltfErrors, Images) {
 TEST(GltfErrors, TruncatedBinaries) {
   RoomConfig config;
   config.textures = false;
-  const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "whole.glb";
+  const std::filesystem::path path = scratch_folder() / "whole.glb";
   write_glb(make_room(config), path);
   const std::string whole = read_file(path);
   for (size_t i = 0; i < 60; ++i)

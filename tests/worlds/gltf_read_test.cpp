@@ -5,6 +5,7 @@
 
 #include "core/errors.h"
 #include "core/files.h"
+#include "tests/scratch.h"
 #include "tests/worlds/geometry.h"
 #include "tests/worlds/gltf_text.h"
 #include "worlds/gltf.h"
@@ -251,7 +252,7 @@ TEST(GltfRead, TextureTransformChoosesItsOwnCoordinates) {
 
 TEST(GltfRead, BuffersAndImagesBesideTheFile) {
   GltfText text = textured("picture%20one.png");
-  const fs::path folder = fs::path(testing::TempDir()) / "beside";
+  const fs::path folder = scratch_folder() / "beside";
   fs::create_directories(folder);
   const std::string bytes(text.bytes.begin(), text.bytes.end());
   write_file(folder / "data one.bin", bytes + "and more than the buffer needs");

@@ -4,6 +4,7 @@
 
 #include "core/files.h"
 #include "core/se3.h"
+#include "tests/scratch.h"
 #include "tests/worlds/world_equality.h"
 #include "worlds/corridor.h"
 #include "worlds/gltf.h"
@@ -13,7 +14,7 @@ namespace vsslam {
 namespace {
 
 std::filesystem::path temporary(const std::string& name) {
-  return std::filesystem::path(testing::TempDir()) / name;
+  return scratch_folder() / name;
 }
 
 World there_and_back(const World& world, const std::string& name) {

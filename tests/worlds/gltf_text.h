@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/files.h"
+#include "tests/scratch.h"
 
 namespace vsslam {
 
@@ -76,7 +77,7 @@ struct GltfText {
     return whole.dump();
   }
   std::filesystem::path write(const std::string& name) const {
-    const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / name;
+    const std::filesystem::path path = scratch_folder() / name;
     write_file(path, dump());
     return path;
   }

@@ -7,6 +7,7 @@
 
 #include "core/errors.h"
 #include "core/files.h"
+#include "tests/scratch.h"
 #include "worlds/describe.h"
 #include "worlds/gltf.h"
 #include "worlds/likeness.h"
@@ -118,7 +119,7 @@ TEST(WorldSource, OverridesAndWrongKeys) {
 }
 
 TEST(WorldSource, FilesAreRelativeToWhoNamesThem) {
-  const fs::path folder = fs::path(testing::TempDir()) / "named_world";
+  const fs::path folder = scratch_folder() / "named_world";
   fs::create_directories(folder);
   RoomConfig room;
   room.textures = false;
