@@ -13,8 +13,10 @@ set_target_properties(vsslam_slam PROPERTIES EXPORT_NAME slam)
 set_target_properties(vsslam_flags PROPERTIES EXPORT_NAME flags)
 set_target_properties(vsslam_strict PROPERTIES EXPORT_NAME strict)
 set_target_properties(vsslam_pcl PROPERTIES EXPORT_NAME pcl)
+set_target_properties(vsslam_opencv PROPERTIES EXPORT_NAME opencv)
 
-install(TARGETS vsslam_slam vsslam_core vsslam_flags vsslam_strict vsslam_pcl EXPORT vsslamTargets
+install(TARGETS vsslam_slam vsslam_core vsslam_flags vsslam_strict vsslam_pcl
+                vsslam_opencv EXPORT vsslamTargets
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(DIRECTORY core slam DESTINATION ${VSSLAM_INCLUDE_DIR} FILES_MATCHING PATTERN "*.h")
 install(EXPORT vsslamTargets NAMESPACE vsslam:: DESTINATION ${VSSLAM_PACKAGE_DIR})

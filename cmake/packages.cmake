@@ -27,3 +27,12 @@ add_library(vsslam_pcl_io INTERFACE)
 target_link_libraries(vsslam_pcl_io INTERFACE vsslam_pcl ${PCL_IO_LIBRARY})
 add_library(vsslam_pcl_registration INTERFACE)
 target_link_libraries(vsslam_pcl_registration INTERFACE vsslam_pcl ${PCL_REGISTRATION_LIBRARY})
+
+# OpenCV by its parts: its own config file comes only with the whole of it, viewers and video codecs included.
+find_path(OPENCV_INCLUDE_DIR opencv2/core.hpp PATH_SUFFIXES opencv4 REQUIRED)
+add_library(vsslam_opencv INTERFACE)
+target_include_directories(vsslam_opencv SYSTEM INTERFACE ${OPENCV_INCLUDE_DIR})
+foreach(part video calib3d imgproc core)
+  find_library(OPENCV_${part}_LIBRARY opencv_${part} REQUIRED)
+  target_link_libraries(vsslam_opencv INTERFACE ${OPENCV_${part}_LIBRARY})
+endforeach()

@@ -9,15 +9,6 @@
 
 namespace vsslam {
 
-void LightingConfig::fields(Fields& f) {
-  f.choice("preset", preset,
-           {{"even", Preset::even},
-            {"non_uniform", Preset::non_uniform},
-            {"low", Preset::low},
-            {"dark", Preset::dark},
-            {"bright", Preset::bright}});
-}
-
 void Scenario::fields(Fields& f) {
   f.base("scenarios", *this);
   f("name", name);

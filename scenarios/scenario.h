@@ -15,16 +15,10 @@
 #include "sim/drive_script.h"
 #include "sim/scout.h"
 #include "slam/slam.h"
+#include "worlds/lighting.h"
 #include "worlds/world_source.h"
 
 namespace vsslam {
-
-/// How the world is lit. LiDAR scans do not depend on it; cameras do.
-struct LightingConfig {
-  enum class Preset { even, non_uniform, low, dark, bright };
-  Preset preset = Preset::even;
-  void fields(Fields& f);
-};
 
 struct Scenario {
   std::string name;         ///< names the result folder; default: the file's name without .yaml
