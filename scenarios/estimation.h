@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "scenarios/belief.h"
 #include "scenarios/oracles/loop_truth.h"
 #include "scenarios/sensing.h"
 #include "slam/slam.h"

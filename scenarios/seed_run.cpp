@@ -11,7 +11,8 @@ namespace vsslam {
 
 namespace {
 
-constexpr size_t kQueueChunks = 16;  // bounds the memory: 1.6 s of measurements
+// They bound the memory: so many stretches of 0.1 s.
+constexpr size_t kQueueChunks = 16, kQueueMotions = 4;
 
 }  // namespace
 
@@ -33,45 +34,62 @@ Step SeedRun::claim() {
   Lane* fullest = nullptr;
   for (const auto& lane : lanes_) {
     if (lane->busy || lane->written) continue;
-    if (lane->queue.empty() && sensing_->ended() && !sensing_busy_) return write(*lane);
+    if (lane->queue.empty() && all_sensed()) return write(*lane);
     if (!lane->queue.empty() && (fullest == nullptr || lane->queue.size() > fullest->queue.size()))
       fullest = lane.get();
   }
   if (fullest != nullptr) return estimate(*fullest);
   if (may_sense()) return sense();
+  if (may_drive()) return drive();
   return {};
 }
 
 Step SeedRun::open() {
   opening_ = true;
-  auto made = std::make_shared<std::unique_ptr<Sensing>>();
+  struct Made {
+    std::unique_ptr<Driving> driving;
+    std::unique_ptr<Sensing> sensing;
+  };
+  auto made = std::make_shared<Made>();
   return {.work =
               [this, made] {
                 start_ns_ = sensing_clock_.now_ns();
                 for (const auto& lane : lanes_)
                   lane->estimation =
                       std::make_unique<Estimation>(context_.scenario, lane->method, &lane->clock);
-                *made = std::make_unique<Sensing>(context_.scenario, context_.world, seed_, &sensing_clock_);
+                made->driving = std::make_unique<Driving>(context_.scenario, context_.world, &driving_clock_);
+                made->sensing =
+                    std::make_unique<Sensing>(context_.scenario, context_.world, seed_, &sensing_clock_);
               },
           .commit =
               [this, made] {
-                sensing_ = std::move(*made);
+                driving_ = std::move(made->driving);
+                sensing_ = std::move(made->sensing);
                 opening_ = false;
-                context_.on_expected(sensing_->expected_duration_s());
+                context_.on_expected(driving_->expected_duration_s());
               }};
 }
 
 // Estimates older than the latency must have been made before the robot drives on.
 Time SeedRun::belief_due() const {
-  return sensing_->until() - Duration::from_seconds(context_.scenario.closed_loop_latency_s);
+  return driving_->until() - Duration::from_seconds(context_.scenario.closed_loop_latency_s);
+}
+
+bool SeedRun::may_drive() const {
+  if (driving_busy_ || driving_->ended() || motions_.size() >= kQueueMotions) return false;
+  return !context_.scenario.closed_loop || std::all_of(lanes_.begin(), lanes_.end(), [&](const auto& lane) {
+    return lane->consumed >= belief_due();
+  });
 }
 
 bool SeedRun::may_sense() const {
-  if (sensing_busy_ || sensing_->ended()) return false;
-  const bool closed_loop = context_.scenario.closed_loop;
-  return std::all_of(lanes_.begin(), lanes_.end(), [&](const auto& lane) {
-    return lane->queue.size() < kQueueChunks && (!closed_loop || lane->consumed >= belief_due());
-  });
+  if (sensing_busy_ || motions_.empty()) return false;
+  return std::all_of(lanes_.begin(), lanes_.end(),
+                     [&](const auto& lane) { return lane->queue.size() < kQueueChunks; });
+}
+
+bool SeedRun::all_sensed() const {
+  return !driving_busy_ && driving_->ended() && motions_.empty() && !sensing_busy_;
 }
 
 std::optional<Belief> SeedRun::belief() {
@@ -82,13 +100,29 @@ std::optional<Belief> SeedRun::belief() {
   return !beliefs.empty() && usable(beliefs.front()) ? std::optional(beliefs.front()) : std::nullopt;
 }
 
+Step SeedRun::drive() {
+  driving_busy_ = true;
+  auto motion = std::make_shared<std::shared_ptr<const Motion>>();
+  return {.work =
+              [this, motion, belief = belief(), from = needed_from_] {
+                *motion = std::make_shared<const Motion>(driving_->next(belief, from));
+              },
+          .commit =
+              [this, motion] {
+                motions_.push_back(*motion);
+                driving_busy_ = false;
+              }};
+}
+
 Step SeedRun::sense() {
   sensing_busy_ = true;
   auto chunk = std::make_shared<Chunk>();
-  return {.work = [this, chunk, belief = belief()] { *chunk = sensing_->next(belief); },
+  return {.work = [this, chunk, motion = motions_.front()] { *chunk = sensing_->next(*motion); },
           .commit =
               [this, chunk] {
                 for (const auto& lane : lanes_) lane->queue.push_back(chunk);
+                needed_from_ = std::min(sensing_->needed_from(), chunk->until);
+                motions_.pop_front();
                 sensing_busy_ = false;
               }};
 }
@@ -127,8 +161,8 @@ FinishedRun SeedRun::write_result(Lane& lane) {
   lane.estimation->finish();
   FinishedRun run{.method = lane.method, .seed = seed_};
   run.folder = result_path(context_.options.out, context_.scenario.name, lane.method, seed_);
-  if (sensing_->outcome() == DriveOutcome::stuck || sensing_->outcome() == DriveOutcome::collided)
-    run.failure = sensing_->outcome_text();
+  if (driving_->outcome() == DriveOutcome::stuck || driving_->outcome() == DriveOutcome::collided)
+    run.failure = driving_->outcome_text();
 
   const RunRecord record{.scenario = context_.scenario,
                          .world = context_.world,
@@ -136,7 +170,7 @@ FinishedRun SeedRun::write_result(Lane& lane) {
                          .surface = context_.surface(),
                          .estimation = *lane.estimation,
                          .seed = seed_,
-                         .duration_s = sensing_->until().seconds()};
+                         .duration_s = driving_->until().seconds()};
   PendingFolder folder(run.folder);
   {
     StageTimer timer(&lane.clock, "score_and_write");
@@ -145,6 +179,7 @@ FinishedRun SeedRun::write_result(Lane& lane) {
     run.metrics = scored.metrics;
   }
   WallClock clock = lane.clock;
+  clock.add(driving_clock_);
   clock.add(sensing_clock_);
   const double wall_s = static_cast<double>(clock.now_ns() - start_ns_) * 1e-9;
   run.real_time_factor = record.duration_s / wall_s;

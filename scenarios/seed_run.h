@@ -1,4 +1,4 @@
-// One seed of a scenario as a pipeline: sensing -> queue -> estimation, once per method -> result folder.
+// One seed of a scenario as a pipeline: driving -> sensing -> estimation, once per method -> result folder.
 #pragma once
 
 #include <deque>
@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "scenarios/driving.h"
 #include "scenarios/estimation.h"
 #include "scenarios/oracles/map_error.h"
 #include "scenarios/pipeline.h"
@@ -49,20 +50,26 @@ class SeedRun final : public Pipeline {
   };
 
   Step open();
+  Step drive();
   Step sense();
   Step estimate(Lane& lane);
   Step write(Lane& lane);
+  bool may_drive() const;
   bool may_sense() const;
+  bool all_sensed() const;
   Time belief_due() const;
   std::optional<Belief> belief();
   FinishedRun write_result(Lane& lane);
 
   const RunContext& context_;
   uint64_t seed_;
-  WallClock sensing_clock_;
+  WallClock driving_clock_, sensing_clock_;
   int64_t start_ns_ = 0;
+  std::unique_ptr<Driving> driving_;
   std::unique_ptr<Sensing> sensing_;
-  bool opening_ = false, sensing_busy_ = false;
+  std::deque<std::shared_ptr<const Motion>> motions_;  // driven, not yet sensed
+  Time needed_from_{0};
+  bool opening_ = false, driving_busy_ = false, sensing_busy_ = false;
   std::vector<std::unique_ptr<Lane>> lanes_;
 };
 

@@ -6,6 +6,7 @@
 
 #include "sensors/faults.h"
 #include "sensors/lidar.h"
+#include "sensors/moving_objects.h"
 
 namespace vsslam {
 
@@ -57,9 +58,6 @@ Rig::~Rig() = default;
 
 Raycaster& Rig::raycaster() {
   return impl_->raycaster;
-}
-const MovingObjects& Rig::moving_objects() const {
-  return impl_->moving;
 }
 
 Time Rig::needed_from() const {

@@ -9,7 +9,6 @@
 #include "core/config.h"
 #include "sensors/imu.h"
 #include "sensors/lidar_config.h"
-#include "sensors/moving_objects.h"
 #include "sensors/raycaster.h"
 #include "sensors/samples.h"
 #include "sensors/sensor_events.h"
@@ -63,8 +62,6 @@ class Rig {
   /// Earliest time of the truth that is still needed.
   Time needed_from() const;
   Raycaster& raycaster();
-  /// For those who must move the same objects, as the simulation's collisions do.
-  const MovingObjects& moving_objects() const;
 
  private:
   struct Impl;

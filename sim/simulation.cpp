@@ -187,6 +187,12 @@ WheelState Simulation::wheels(Time stamp) const {
   return impl_->wheels.at(stamp);
 }
 
+Motion Simulation::motion_since(Time from, Time until) const {
+  Motion motion{until, impl_->trajectory, impl_->wheels.since(from)};
+  motion.trajectory.forget_before(from);
+  return motion;
+}
+
 void Simulation::forget_before(Time stamp) {
   impl_->trajectory.forget_before(stamp);
   impl_->wheels.forget_before(stamp);

@@ -10,9 +10,8 @@
 #include "core/se3.h"
 #include "core/time.h"
 #include "sim/drive_script.h"
+#include "sim/motion.h"
 #include "sim/scout.h"
-#include "sim/trajectory.h"
-#include "sim/wheel_state.h"
 #include "worlds/world.h"
 
 namespace vsslam {
@@ -37,6 +36,8 @@ class Simulation {
   /// Truth up to trajectory().end(), a little before now().
   const Trajectory& trajectory() const;
   WheelState wheels(Time stamp) const;
+  /// A copy of the truth from `from` to `until`, both within what the trajectory knows.
+  Motion motion_since(Time from, Time until) const;
   /// Drops what is only needed before `stamp`.
   void forget_before(Time stamp);
 

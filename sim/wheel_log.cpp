@@ -68,6 +68,15 @@ void WheelLog::forget_before(Time stamp) {
   }
 }
 
+WheelLog WheelLog::since(Time stamp) const {
+  WheelLog log(scout_);
+  const int64_t skipped = std::clamp<int64_t>((stamp.ns - first_ns_) / Dynamics::kStep_ns, 0,
+                                              static_cast<int64_t>(entries_.size()));
+  log.first_ns_ = first_ns_ + skipped * Dynamics::kStep_ns;
+  log.entries_.assign(entries_.begin() + skipped, entries_.end());
+  return log;
+}
+
 WheelState WheelLog::at(Time stamp) const {
   const int64_t since_first_ns = stamp.ns - first_ns_;
   const int64_t last_ns = Dynamics::kStep_ns * (static_cast<int64_t>(entries_.size()) - 1);

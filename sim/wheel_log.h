@@ -20,6 +20,8 @@ class WheelLog {
   void push(Time stamp, const RobotState& state);
   /// Keeps the last kKept_ns nevertheless, for moved_since.
   void forget_before(Time stamp);
+  /// A copy that begins at the entry before `stamp`, or at the first one kept.
+  WheelLog since(Time stamp) const;
   /// Between the first entry kept and the last; aborts outside.
   WheelState at(Time stamp) const;
   /// Pose now in the base frame of `since`, dead-reckoned from the wheels' rotation. Entries that were dropped count
