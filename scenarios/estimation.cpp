@@ -1,37 +1,63 @@
 #include "scenarios/estimation.h"
 
+#include <utility>
+
 namespace vsslam {
+
+namespace {
+
+int64_t now_ns(StageClock* clock) {
+  return clock ? clock->now_ns() : 0;
+}
+
+}  // namespace
 
 RigCalibration calibration_of(const Scenario& scenario) {
   return scenario.rig.calibration(scenario.robot.wheel_radius_m, effective_track_m(scenario.robot),
                                   base_height_m(scenario.robot));
 }
 
-Estimation::Estimation(const Scenario& scenario, Method method, StageClock* clock)
-    : method_(method), clock_(clock), slam_(scenario.slam, calibration_of(scenario), method, clock) {}
+OdometryRun::OdometryRun(const Scenario& scenario, StageClock* clock)
+    : clock_(clock), odometry_(scenario.slam, calibration_of(scenario), clock) {}
 
-std::vector<Belief> Estimation::add(const Chunk& chunk) {
-  std::vector<Belief> beliefs;
-  for (const Measurement& measurement : chunk.measurements) {
+OdometryChunk OdometryRun::add(std::shared_ptr<const Chunk> chunk) {
+  OdometryChunk result{.chunk = std::move(chunk), .scans = {}, .elapsed_ns = {}};
+  for (const Measurement& measurement : result.chunk->measurements) {
     if (const auto* imu = std::get_if<ImuMeasurement>(&measurement)) {
-      slam_.add(imu->sample);
+      odometry_.add(imu->sample);
     } else if (const auto* wheels = std::get_if<WheelMeasurement>(&measurement)) {
-      slam_.add(wheels->sample);
+      odometry_.add(wheels->sample);
     } else if (const auto* lidar = std::get_if<LidarMeasurement>(&measurement)) {
-      beliefs.push_back(add(*lidar, chunk.scans[beliefs.size()]));
+      const int64_t start_ns = now_ns(clock_);
+      result.scans.push_back(odometry_.add(lidar->scan));
+      result.elapsed_ns.push_back(now_ns(clock_) - start_ns);
     }
+  }
+  return result;
+}
+
+MappingRun::MappingRun(const Scenario& scenario, Method method, StageClock* clock)
+    : method_(method), clock_(clock), mapping_(scenario.slam, calibration_of(scenario), method, clock) {}
+
+std::vector<Belief> MappingRun::add(const OdometryChunk& chunk) {
+  std::vector<Belief> beliefs;
+  for (const Measurement& measurement : chunk.chunk->measurements) {
+    const auto* lidar = std::get_if<LidarMeasurement>(&measurement);
+    if (lidar == nullptr) continue;
+    const size_t i = beliefs.size();
+    const int64_t start_ns = now_ns(clock_);
+    beliefs.push_back(add(chunk.scans[i], *lidar, chunk.chunk->scans[i]));
+    if (clock_) clock_->record("slam_scan", chunk.elapsed_ns[i] + now_ns(clock_) - start_ns);
   }
   return beliefs;
 }
 
-Belief Estimation::add(const LidarMeasurement& measurement, const ScanTruth& truth) {
+Belief MappingRun::add(const OdometryScan& scan, const LidarMeasurement& measurement,
+                       const ScanTruth& truth) {
   // The map's origin is the base at the first scan, with z up: what a robot that knows its parking place knows.
   if (reports_.empty())
     T_world_map_ = SE3::from_rpy({0, 0, truth.T_world_base.rpy().z()}, truth.T_world_base.translation);
-  {
-    StageTimer timer(clock_, "slam_scan");
-    reports_.push_back(slam_.add(measurement.scan));
-  }
+  reports_.push_back(mapping_.add(scan));
   const ScanReport& report = reports_.back();
   truth_world_base_.push_back({measurement.scan.stamp, truth.T_world_base});
   degeneracy_truth_.push_back(truth.degeneracy);
@@ -41,9 +67,9 @@ Belief Estimation::add(const LidarMeasurement& measurement, const ScanTruth& tru
   return {measurement.scan.end, report.stamp, T_world_map_ * report.T_map_base};
 }
 
-void Estimation::finish() {
+void MappingRun::finish() {
   StageTimer timer(clock_, "slam_finish");
-  slam_.finish();
+  mapping_.finish();
 }
 
 }  // namespace vsslam

@@ -1,40 +1,62 @@
-// The estimating side of a run: one method, fed chunk by chunk, and what a score of it needs to remember.
+// The estimating side of a run: one odometry for all methods, one mapping for each, fed chunk by chunk, and
+// what a score of them needs to remember.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "scenarios/belief.h"
 #include "scenarios/oracles/loop_truth.h"
 #include "scenarios/sensing.h"
-#include "slam/slam.h"
+#include "slam/mapping.h"
+#include "slam/odometry.h"
 
 namespace vsslam {
 
 /// What the estimator is told about the robot of a scenario.
 RigCalibration calibration_of(const Scenario& scenario);
 
-/// Not thread-safe; one per method and seed.
-class Estimation {
- public:
-  Estimation(const Scenario& scenario, Method method, StageClock* clock);
+/// A chunk with what the odometry made of it.
+struct OdometryChunk {
+  std::shared_ptr<const Chunk> chunk;
+  std::vector<OdometryScan> scans;  ///< one per LidarMeasurement, same order
+  std::vector<int64_t> elapsed_ns;  ///< wall clock of each; not for results
+};
 
-  /// Feeds a chunk; returns the beliefs of its scans.
-  std::vector<Belief> add(const Chunk& chunk);
+/// Not thread-safe; one per seed.
+class OdometryRun {
+ public:
+  OdometryRun(const Scenario& scenario, StageClock* clock);
+
+  OdometryChunk add(std::shared_ptr<const Chunk> chunk);
+
+ private:
+  StageClock* clock_;
+  Odometry odometry_;
+};
+
+/// Not thread-safe; one per method and seed.
+class MappingRun {
+ public:
+  MappingRun(const Scenario& scenario, Method method, StageClock* clock);
+
+  /// Returns the beliefs of the chunk's scans.
+  std::vector<Belief> add(const OdometryChunk& chunk);
   void finish();
 
   Method method() const { return method_; }
-  const Slam& slam() const { return slam_; }
+  const Mapping& mapping() const { return mapping_; }
   const std::vector<ScanReport>& reports() const { return reports_; }
   const std::vector<StampedPose>& truth_world_base() const { return truth_world_base_; }
   const std::vector<DegeneracyTruth>& degeneracy_truth() const { return degeneracy_truth_; }
   const std::vector<KeyScanTruth>& key_scan_truth() const { return key_scan_truth_; }
 
  private:
-  Belief add(const LidarMeasurement& measurement, const ScanTruth& truth);
+  Belief add(const OdometryScan& scan, const LidarMeasurement& measurement, const ScanTruth& truth);
 
   Method method_;
   StageClock* clock_;
-  Slam slam_;
+  Mapping mapping_;
   std::vector<ScanReport> reports_;
   std::vector<StampedPose> truth_world_base_;
   std::vector<DegeneracyTruth> degeneracy_truth_;

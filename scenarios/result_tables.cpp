@@ -38,7 +38,7 @@ void put_or_empty(CsvWriter& csv, double value) {
 
 }  // namespace
 
-std::string scans_csv(const Estimation& estimation, const LoopScore& loops) {
+std::string scans_csv(const MappingRun& estimation, const LoopScore& loops) {
   std::map<int, Revisit> revisits;
   for (const Revisit& revisit : loops.revisits) revisits[revisit.key] = revisit;
   CsvWriter csv(kScanColumns);
@@ -81,10 +81,10 @@ std::string loops_csv(std::span<const LoopRecord> records, const LoopScore& loop
   return csv.text();
 }
 
-std::string descriptors_csv(const Slam& slam) {
+std::string descriptors_csv(const Mapping& mapping) {
   CsvWriter csv(kDescriptorColumns);
-  for (const StoredDescriptor& descriptor : slam.loop_closer().stored()) {
-    const KeyScan& key = slam.key_scans()[static_cast<size_t>(descriptor.key)];
+  for (const StoredDescriptor& descriptor : mapping.loop_closer().stored()) {
+    const KeyScan& key = mapping.key_scans()[static_cast<size_t>(descriptor.key)];
     csv(key.id)(key.scan)(key.stamp)(key.T_map_base)(descriptor.bytes);
     csv.end_row();
   }

@@ -8,8 +8,8 @@
 
 namespace vsslam {
 
-std::string scans_csv(const Estimation& estimation, const LoopScore& loops);
+std::string scans_csv(const MappingRun& estimation, const LoopScore& loops);
 std::string loops_csv(std::span<const LoopRecord> records, const LoopScore& loops);
-std::string descriptors_csv(const Slam& slam);
+std::string descriptors_csv(const Mapping& mapping);
 
 }  // namespace vsslam

@@ -16,15 +16,15 @@ namespace fs = std::filesystem;
 
 namespace {
 
-Metrics::Descriptors score_descriptors(const Slam& slam) {
-  const DatabaseSize size = slam.loop_closer().database_size(slam.key_scans());
+Metrics::Descriptors score_descriptors(const Mapping& mapping) {
+  const DatabaseSize size = mapping.loop_closer().database_size(mapping.key_scans());
   return {.count = size.count,
           .index_bytes = static_cast<int64_t>(size.index_bytes),
           .descriptor_bytes = static_cast<int64_t>(size.descriptor_bytes),
           .database_bytes = static_cast<int64_t>(size.database_bytes)};
 }
 
-Metrics::Degeneracy score_degeneracy_of(const Estimation& estimation) {
+Metrics::Degeneracy score_degeneracy_of(const MappingRun& estimation) {
   std::vector<DegeneracyReport> reports;
   for (const ScanReport& report : estimation.reports())
     reports.push_back({report.information, report.degenerate_directions});
@@ -34,7 +34,7 @@ Metrics::Degeneracy score_degeneracy_of(const Estimation& estimation) {
 
 void score_loops(const RunRecord& record, ScoredRun& scored) {
   const LoopOracle oracle(record.world, record.raycaster, record.estimation.key_scan_truth());
-  scored.loops = oracle.score(record.estimation.slam().loops());
+  scored.loops = oracle.score(record.estimation.mapping().loops());
   Metrics::Loops& loops = scored.metrics.loops;
   loops.candidates = scored.loops.candidates;
   loops.accepted = scored.loops.accepted;
@@ -48,15 +48,15 @@ void score_loops(const RunRecord& record, ScoredRun& scored) {
 void score_trajectories(const RunRecord& record, Metrics& m) {
   const std::vector<StampedPose>& truth = record.estimation.truth_world_base();
   if (truth.empty()) return;
-  const TrajectoryScore estimate = score(record.estimation.slam().trajectory_map_base(), truth);
+  const TrajectoryScore estimate = score(record.estimation.mapping().trajectory_map_base(), truth);
   m.path_length_m = estimate.path_length_m;
   m.ate_rmse_m = estimate.ate_rmse_m;
   m.ate_max_m = estimate.ate_max_m;
   m.rpe_10m_percent = estimate.rpe_10m_percent;
   m.rpe_10m_deg = estimate.rpe_10m_deg;
   m.end_error_m = estimate.end_error_m;
-  m.odometry_ate_rmse_m = score(record.estimation.slam().trajectory_odom_base(), truth).ate_rmse_m;
-  const Cloud map = record.estimation.slam().map_cloud(record.scenario.map_voxel_m);
+  m.odometry_ate_rmse_m = score(record.estimation.mapping().trajectory_odom_base(), truth).ate_rmse_m;
+  const Cloud map = record.estimation.mapping().map_cloud(record.scenario.map_voxel_m);
   if (!map.empty())
     m.map_error_mean_m = map_error(map, estimate.T_truth_estimate, record.surface).mean_m;
 }
@@ -79,7 +79,7 @@ ScoredRun score_run(const RunRecord& record) {
   m.duration_s = record.duration_s;
   m.scans = static_cast<int64_t>(record.estimation.reports().size());
   score_trajectories(record, m);
-  m.descriptors = score_descriptors(record.estimation.slam());
+  m.descriptors = score_descriptors(record.estimation.mapping());
   score_loops(record, scored);
   m.degeneracy = score_degeneracy_of(record.estimation);
   m.compare(bounds_for(record.scenario.expect, m.method));
@@ -87,17 +87,17 @@ ScoredRun score_run(const RunRecord& record) {
 }
 
 void write_results(const fs::path& folder, const RunRecord& record, const ScoredRun& scored) {
-  const Slam& slam = record.estimation.slam();
+  const Mapping& mapping = record.estimation.mapping();
   write_file(folder / "scenario.yaml", save_config(scenario_of(record)));
   write_file(folder / "metrics.json", scored.metrics.json());
   write_tum(folder / "truth.tum", record.estimation.truth_world_base());
-  write_tum(folder / "estimate.tum", slam.trajectory_map_base());
-  write_tum(folder / "odometry.tum", slam.trajectory_odom_base());
+  write_tum(folder / "estimate.tum", mapping.trajectory_map_base());
+  write_tum(folder / "odometry.tum", mapping.trajectory_odom_base());
   write_file(folder / "scans.csv", scans_csv(record.estimation, scored.loops));
-  write_file(folder / "loops.csv", loops_csv(slam.loops(), scored.loops));
-  write_file(folder / "descriptors.csv", descriptors_csv(slam));
-  slam.pose_graph().write_g2o(folder / "pose_graph.g2o");
-  write_ply(folder / "map.ply", slam.map_cloud(record.scenario.map_voxel_m));
+  write_file(folder / "loops.csv", loops_csv(mapping.loops(), scored.loops));
+  write_file(folder / "descriptors.csv", descriptors_csv(mapping));
+  mapping.pose_graph().write_g2o(folder / "pose_graph.g2o");
+  write_ply(folder / "map.ply", mapping.map_cloud(record.scenario.map_voxel_m));
 }
 
 void write_timing(const fs::path& folder, const Timing& timing, const WallClock& clock) {

@@ -17,7 +17,7 @@ struct RunRecord {
   const World& world;
   const Raycaster& raycaster;
   const SurfaceDistance& surface;
-  const Estimation& estimation;
+  const MappingRun& estimation;
   uint64_t seed = 0;
   double duration_s = 0;
 };

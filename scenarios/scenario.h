@@ -14,7 +14,7 @@
 #include "sensors/rig.h"
 #include "sim/drive_script.h"
 #include "sim/scout.h"
-#include "slam/slam.h"
+#include "slam/slam_config.h"
 #include "worlds/lighting.h"
 #include "worlds/world_source.h"
 

@@ -12,7 +12,7 @@ namespace vsslam {
 namespace {
 
 // They bound the memory: so many stretches of 0.1 s.
-constexpr size_t kQueueChunks = 16, kQueueMotions = 4;
+constexpr size_t kQueueScans = 16, kQueueChunks = 4, kQueueMotions = 4;
 
 }  // namespace
 
@@ -34,11 +34,12 @@ Step SeedRun::claim() {
   Lane* fullest = nullptr;
   for (const auto& lane : lanes_) {
     if (lane->busy || lane->written) continue;
-    if (lane->queue.empty() && all_sensed()) return write(*lane);
+    if (lane->queue.empty() && all_located()) return write(*lane);
     if (!lane->queue.empty() && (fullest == nullptr || lane->queue.size() > fullest->queue.size()))
       fullest = lane.get();
   }
-  if (fullest != nullptr) return estimate(*fullest);
+  if (fullest != nullptr) return map(*fullest);
+  if (may_locate()) return locate();
   if (may_sense()) return sense();
   if (may_drive()) return drive();
   return {};
@@ -49,6 +50,7 @@ Step SeedRun::open() {
   struct Made {
     std::unique_ptr<Driving> driving;
     std::unique_ptr<Sensing> sensing;
+    std::unique_ptr<OdometryRun> odometry;
   };
   auto made = std::make_shared<Made>();
   return {.work =
@@ -56,7 +58,8 @@ Step SeedRun::open() {
                 start_ns_ = sensing_clock_.now_ns();
                 for (const auto& lane : lanes_)
                   lane->estimation =
-                      std::make_unique<Estimation>(context_.scenario, lane->method, &lane->clock);
+                      std::make_unique<MappingRun>(context_.scenario, lane->method, &lane->clock);
+                made->odometry = std::make_unique<OdometryRun>(context_.scenario, &odometry_clock_);
                 made->driving = std::make_unique<Driving>(context_.scenario, context_.world, &driving_clock_);
                 made->sensing =
                     std::make_unique<Sensing>(context_.scenario, context_.world, seed_, &sensing_clock_);
@@ -65,6 +68,7 @@ Step SeedRun::open() {
               [this, made] {
                 driving_ = std::move(made->driving);
                 sensing_ = std::move(made->sensing);
+                odometry_ = std::move(made->odometry);
                 opening_ = false;
                 context_.on_expected(driving_->expected_duration_s());
               }};
@@ -83,13 +87,18 @@ bool SeedRun::may_drive() const {
 }
 
 bool SeedRun::may_sense() const {
-  if (sensing_busy_ || motions_.empty()) return false;
-  return std::all_of(lanes_.begin(), lanes_.end(),
-                     [&](const auto& lane) { return lane->queue.size() < kQueueChunks; });
+  return !sensing_busy_ && !motions_.empty() && chunks_.size() < kQueueChunks;
 }
 
-bool SeedRun::all_sensed() const {
-  return !driving_busy_ && driving_->ended() && motions_.empty() && !sensing_busy_;
+bool SeedRun::may_locate() const {
+  if (odometry_busy_ || chunks_.empty()) return false;
+  return std::all_of(lanes_.begin(), lanes_.end(),
+                     [&](const auto& lane) { return lane->queue.size() < kQueueScans; });
+}
+
+bool SeedRun::all_located() const {
+  return driving_->ended() && !driving_busy_ && motions_.empty() && !sensing_busy_ && chunks_.empty() &&
+         !odometry_busy_;
 }
 
 std::optional<Belief> SeedRun::belief() {
@@ -120,26 +129,39 @@ Step SeedRun::sense() {
   return {.work = [this, chunk, motion = motions_.front()] { *chunk = sensing_->next(*motion); },
           .commit =
               [this, chunk] {
-                for (const auto& lane : lanes_) lane->queue.push_back(chunk);
+                chunks_.push_back(chunk);
                 needed_from_ = std::min(sensing_->needed_from(), chunk->until);
                 motions_.pop_front();
                 sensing_busy_ = false;
               }};
 }
 
-Step SeedRun::estimate(Lane& lane) {
-  lane.busy = true;
-  const std::shared_ptr<const Chunk> chunk = lane.queue.front();
-  auto beliefs = std::make_shared<std::vector<Belief>>();
-  return {.work = [&lane, chunk, beliefs] { *beliefs = lane.estimation->add(*chunk); },
+Step SeedRun::locate() {
+  odometry_busy_ = true;
+  auto located = std::make_shared<OdometryChunk>();
+  return {.work = [this, located, chunk = chunks_.front()] { *located = odometry_->add(chunk); },
           .commit =
-              [this, &lane, chunk, beliefs] {
+              [this, located] {
+                for (const auto& lane : lanes_) lane->queue.push_back(located);
+                chunks_.pop_front();
+                odometry_busy_ = false;
+              }};
+}
+
+Step SeedRun::map(Lane& lane) {
+  lane.busy = true;
+  const std::shared_ptr<const OdometryChunk> located = lane.queue.front();
+  auto beliefs = std::make_shared<std::vector<Belief>>();
+  return {.work = [&lane, located, beliefs] { *beliefs = lane.estimation->add(*located); },
+          .commit =
+              [this, &lane, located, beliefs] {
                 lane.queue.pop_front();
                 if (context_.scenario.closed_loop)
                   lane.beliefs.insert(lane.beliefs.end(), beliefs->begin(), beliefs->end());
-                context_.on_progress((chunk->until - lane.consumed).seconds(),
+                const Time until = located->chunk->until;
+                context_.on_progress((until - lane.consumed).seconds(),
                                      static_cast<int64_t>(beliefs->size()));
-                lane.consumed = chunk->until;
+                lane.consumed = until;
                 lane.busy = false;
               }};
 }
@@ -181,6 +203,7 @@ FinishedRun SeedRun::write_result(Lane& lane) {
   WallClock clock = lane.clock;
   clock.add(driving_clock_);
   clock.add(sensing_clock_);
+  clock.add(odometry_clock_);
   const double wall_s = static_cast<double>(clock.now_ns() - start_ns_) * 1e-9;
   run.real_time_factor = record.duration_s / wall_s;
   write_timing(folder.path(), {.wall_s = wall_s, .real_time_factor = run.real_time_factor}, clock);

@@ -1,4 +1,5 @@
-// One seed of a scenario as a pipeline: driving -> sensing -> estimation, once per method -> result folder.
+// One seed of a scenario as a pipeline: driving -> sensing -> odometry -> mapping, once per
+// method -> result folder.
 #pragma once
 
 #include <deque>
@@ -42,8 +43,8 @@ class SeedRun final : public Pipeline {
   struct Lane {
     Method method;
     WallClock clock;
-    std::unique_ptr<Estimation> estimation;
-    std::deque<std::shared_ptr<const Chunk>> queue;
+    std::unique_ptr<MappingRun> estimation;
+    std::deque<std::shared_ptr<const OdometryChunk>> queue;
     std::deque<Belief> beliefs;  // closed loop: not yet old enough to steer, and the one that steers
     Time consumed{0};
     bool busy = false, written = false;
@@ -52,24 +53,28 @@ class SeedRun final : public Pipeline {
   Step open();
   Step drive();
   Step sense();
-  Step estimate(Lane& lane);
+  Step locate();
+  Step map(Lane& lane);
   Step write(Lane& lane);
   bool may_drive() const;
   bool may_sense() const;
-  bool all_sensed() const;
+  bool may_locate() const;
+  bool all_located() const;
   Time belief_due() const;
   std::optional<Belief> belief();
   FinishedRun write_result(Lane& lane);
 
   const RunContext& context_;
   uint64_t seed_;
-  WallClock driving_clock_, sensing_clock_;
+  WallClock driving_clock_, sensing_clock_, odometry_clock_;
   int64_t start_ns_ = 0;
   std::unique_ptr<Driving> driving_;
   std::unique_ptr<Sensing> sensing_;
+  std::unique_ptr<OdometryRun> odometry_;
   std::deque<std::shared_ptr<const Motion>> motions_;  // driven, not yet sensed
+  std::deque<std::shared_ptr<const Chunk>> chunks_;    // sensed, not yet located
   Time needed_from_{0};
-  bool opening_ = false, driving_busy_ = false, sensing_busy_ = false;
+  bool opening_ = false, driving_busy_ = false, sensing_busy_ = false, odometry_busy_ = false;
   std::vector<std::unique_ptr<Lane>> lanes_;
 };
 

@@ -9,13 +9,15 @@
 namespace vsslam {
 
 struct KeyScan {
-  int id = 0;             ///< index in the list of key scans
-  int64_t scan = 0;       ///< index of the scan
+  int id = 0;        ///< index in the list of key scans
+  int64_t scan = 0;  ///< index of the scan
   Time stamp;
-  SE3 T_odom_base;        ///< odometry when it was made; never changes
-  SE3 T_map_base;         ///< after the last optimisation
-  Cloud features_lidar;   ///< undistorted planar points, thinned by the map's voxel size; lidar frame at `stamp`
-  Cloud points_lidar;     ///< undistorted points of the whole scan, for the descriptor; may be released after use
+  SE3 T_odom_base;  ///< odometry when it was made; never changes
+  SE3 T_map_base;   ///< after the last optimisation
+  // Undistorted, in the lidar frame at `stamp`.
+  SharedCloud features_lidar;    ///< planar points, thinned
+  SharedCloud map_points_lidar;  ///< what the map shows
+  SharedCloud points_lidar;      ///< the whole scan, for its descriptor; null once that is made
   Information information;
 };
 

@@ -24,8 +24,8 @@ bool same_pose(const SE3& a, const SE3& b) {
 
 Cloud features_in_base(const KeyScan& key, const SE3& T_base_lidar) {
   Cloud cloud_base;
-  cloud_base.reserve(key.features_lidar.size());
-  append_transformed(key.features_lidar, T_base_lidar, cloud_base);
+  cloud_base.reserve(key.features_lidar->size());
+  append_transformed(*key.features_lidar, T_base_lidar, cloud_base);
   return cloud_base;
 }
 
@@ -75,7 +75,7 @@ LocalMaps::Kept LocalMaps::build(int center, const KeyRange& range, const std::v
   for (int id = range.first; id <= range.last; ++id) {
     const KeyScan& key = keys[static_cast<size_t>(id)];
     kept.T_map_base.push_back(key.T_map_base);
-    append_transformed(key.features_lidar, T_center_map * key.T_map_base * T_base_lidar_, cloud_center);
+    append_transformed(*key.features_lidar, T_center_map * key.T_map_base * T_base_lidar_, cloud_center);
   }
   kept.target = std::make_shared<const IcpTarget>(voxel_means(cloud_center, config_.voxel_m));
   return kept;

@@ -89,7 +89,7 @@ DatabaseSize LoopCloser::database_size(const std::vector<KeyScan>& keys) const {
   }
   size.database_bytes = size.index_bytes + size.descriptor_bytes;
   for (size_t i = 0; i < keys.size(); ++i)
-    if (kept[i]) size.database_bytes += keys[i].features_lidar.size() * sizeof(Eigen::Vector3f);
+    if (kept[i]) size.database_bytes += keys[i].features_lidar->size() * sizeof(Eigen::Vector3f);
   return size;
 }
 

@@ -66,7 +66,7 @@ class ScanContextDetector final : public LoopDetector {
   void remember(const KeyScan& key) override {
     const StageTimer timer(clock_, "loop_descriptor");
     newest_ = QueryDescriptor{
-        ScanContext(polar_heights(key.points_lidar, lidar_.mount_height_m, scan_context_)), 0, {0, 0}};
+        ScanContext(polar_heights(*key.points_lidar, lidar_.mount_height_m, scan_context_)), 0, {0, 0}};
     database_.add(key.id, key.stamp, newest_.context);
   }
 

@@ -12,7 +12,7 @@ Cloud map_cloud(const std::vector<KeyScan>& keys, const SE3& T_base_lidar, doubl
     const SE3 T_map_lidar = key.T_map_base * T_base_lidar;
     const Eigen::Matrix3f R = T_map_lidar.matrix3().cast<float>();
     const Eigen::Vector3f t = T_map_lidar.translation.cast<float>();
-    for (const Eigen::Vector3f& point_lidar : key.points_lidar) {
+    for (const Eigen::Vector3f& point_lidar : *key.map_points_lidar) {
       const Eigen::Vector3f point_map = R * point_lidar + t;
       const size_t before = seen.size();
       seen.insert(voxel_key(point_map, inverse));

@@ -59,7 +59,7 @@ std::vector<KeyScan> corridor_keys(double voxel_m) {
     KeyScan key;
     key.id = id;
     key.T_map_base = planar(id - 25.0, 0.2 * std::sin(0.3 * id), 0.05 * std::sin(0.5 * id), 0.6);
-    key.features_lidar = voxel_means(scan_room(long_corridor(), key.T_map_base, 1800), voxel_m);
+    key.features_lidar = share(voxel_means(scan_room(long_corridor(), key.T_map_base, 1800), voxel_m));
     keys.push_back(std::move(key));
   }
   return keys;

@@ -59,8 +59,8 @@ inline Driven drive(const Scene& scene, const Motion& motion, const DriveOptions
           (driven.T_odom_base_true[i].translation - driven.T_odom_base_true[i - 1].translation).norm();
   }
   driven.position_rmse_m = std::sqrt(driven.position_rmse_m);
-  driven.keys = slam.key_scans();
-  driven.trajectory_map_base = slam.trajectory_map_base();
+  driven.keys = slam.mapping().key_scans();
+  driven.trajectory_map_base = slam.mapping().trajectory_map_base();
   return driven;
 }
 

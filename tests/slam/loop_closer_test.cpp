@@ -34,8 +34,8 @@ Drive laps(int count, double drift_m_per_key) {
     KeyScan key;
     key.id = id;
     key.stamp = Time::from_seconds(1.5 * id);
-    key.points_lidar = scan_room(cluttered_room(), T_map_base * kBaseLidar);
-    key.features_lidar = voxel_means(key.points_lidar, 0.3);
+    key.points_lidar = share(scan_room(cluttered_room(), T_map_base * kBaseLidar));
+    key.features_lidar = share(voxel_means(*key.points_lidar, 0.3));
     key.T_map_base = SE3(Quat::Identity(), {drift_m_per_key * id, 0, 0}) * T_map_base;
     drive.keys.push_back(std::move(key));
     drive.truth.push_back(T_map_base);
@@ -195,7 +195,8 @@ TEST(LoopCloser, SizesFollowTheFormula) {
     KeyScan key;
     key.id = id;
     key.stamp = Time::from_seconds(id);
-    key.features_lidar.resize(3);
+    key.features_lidar = share(Cloud(3, Eigen::Vector3f::Zero()));
+    key.points_lidar = share({});
     keys.push_back(key);
     closer.add(keys, key.stamp);
     const auto known = published.find(id + 1);

@@ -108,7 +108,7 @@ TEST(LocalMap, KeyScansStandInTheirOwnPosesUntilThePosesChange) {
   for (int id = 0; id < 5; ++id) {
     keys[static_cast<size_t>(id)].id = id;
     keys[static_cast<size_t>(id)].T_map_base = planar(10.0 * id, 0, M_PI / 2);
-    keys[static_cast<size_t>(id)].features_lidar = {{1, 0, 0}};
+    keys[static_cast<size_t>(id)].features_lidar = share({{1, 0, 0}});
   }
   LocalMaps maps({.half_width_scans = 1, .voxel_m = 0.1}, SE3(Quat::Identity(), {0, 0, 0.5}));
   const auto map = maps.around(2, 5, keys);

@@ -123,7 +123,7 @@ TEST(SlamSurvives, EmptyScans) {
     EXPECT_TRUE(report.T_map_base.translation.allFinite());
   }
   slam.finish();
-  EXPECT_EQ(slam.trajectory_map_base().size(), 5u);
+  EXPECT_EQ(slam.mapping().trajectory_map_base().size(), 5u);
 }
 
 TEST(Slam, StartsLevelledByGravity) {
@@ -175,8 +175,8 @@ TEST(Slam, MakesKeyScansByDistanceAndAngle) {
     EXPECT_TRUE(T.translation.norm() >= 1.0 || T.angle() >= 0.2) << i;
     EXPECT_LT(T.translation.norm(), 1.2);
     EXPECT_EQ(driven.keys[i].id, static_cast<int>(i));
-    EXPECT_FALSE(driven.keys[i].features_lidar.empty());
-    EXPECT_FALSE(driven.keys[i].points_lidar.empty());
+    EXPECT_FALSE(driven.keys[i].features_lidar->empty());
+    EXPECT_FALSE(driven.keys[i].map_points_lidar->empty());
   }
 }
 

@@ -1,0 +1,42 @@
+// The front end: samples in, for every scan its pose in the odom frame out. It does not know of loops, so one
+// odometry serves any number of methods that map what it finds.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/calibration.h"
+#include "core/samples.h"
+#include "core/stage_clock.h"
+#include "slam/lidar/cloud.h"
+#include "slam/scan_report.h"
+#include "slam/slam_config.h"
+
+namespace vsslam {
+
+/// A registered scan; with clouds (lidar frame at its stamp) if it is a key scan.
+struct OdometryScan {
+  ScanReport report;  ///< key and T_map_base are the mapping's to fill
+  Time end;           ///< of the scan
+  bool is_key = false;
+  SharedCloud features_lidar;    ///< planar points, thinned by `odometry.voxel_m`
+  SharedCloud points_lidar;      ///< all undistorted points
+  SharedCloud map_points_lidar;  ///< of these, one per half of `odometry.voxel_m`
+};
+
+class Odometry {
+ public:
+  Odometry(const SlamConfig& config, const RigCalibration& rig, StageClock* clock = nullptr);
+  ~Odometry();
+
+  void add(const ImuSample& sample);
+  void add(const WheelSample& sample);
+  /// Samples of the other sensors up to scan.end should have been added before.
+  OdometryScan add(const LidarScan& scan);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace vsslam
