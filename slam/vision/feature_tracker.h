@@ -1,5 +1,6 @@
 // From images to tracked features: corners spread over the image, pyramidal Lucas-Kanade with a
-// forward-backward check, RANSAC on epipolar geometry.
+// forward-backward check, RANSAC on epipolar geometry (the visual front end of VINS-Mono and LVI-SAM: Qin, Li,
+// Shen, T-RO 2018; Shan et al., ICRA 2021).
 #pragma once
 
 #include <memory>
@@ -7,18 +8,33 @@
 #include "core/calibration.h"
 #include "core/config.h"
 #include "core/samples.h"
+#include "slam/vision/corners.h"
+#include "slam/vision/epipolar.h"
+#include "slam/vision/optical_flow.h"
 #include "slam/vision/visual_frame.h"
 
 namespace vsslam {
 
 struct FeatureTrackerConfig {
   int max_features = 150;
+  CornerConfig corners;
+  OpticalFlowConfig flow;
+  EpipolarConfig epipolar;
   void fields(Fields& f);
+};
+
+/// What became of the features of one image.
+struct TrackingCounts {
+  int followed = 0;  ///< of the last image's features, those found in this one
+  int rejected = 0;  ///< of these, dropped because they do not fit the camera's motion
+  int detected = 0;  ///< new ones
+  bool equalized = false;
 };
 
 /// Deterministic: the same images give the same features. Not thread-safe.
 class FeatureTracker {
  public:
+  /// Throws InputError if the calibration describes no image that features could be found in.
   FeatureTracker(const FeatureTrackerConfig& config, const CameraCalibration& camera);
   ~FeatureTracker();
 
@@ -28,6 +44,7 @@ class FeatureTracker {
   VisualFrame track(const CameraFrame& image, const Quat* q_last_now = nullptr);
   /// Forgets all tracks; ids go on.
   void reset();
+  const TrackingCounts& counts() const;  ///< of the last image
 
  private:
   struct Impl;

@@ -1,0 +1,50 @@
+// Where points of the last image are in the newest one: pyramidal Lucas-Kanade, there and back.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/config.h"
+#include "core/samples.h"
+#include "slam/vision/corners.h"
+
+namespace vsslam {
+
+enum class Equalize { automatic, always, never };
+
+struct OpticalFlowConfig {
+  int window_px = 21;          ///< odd
+  int levels = 3;              ///< of the pyramid above the image itself, each half the size
+  double max_return_px = 0.5;  ///< a point followed there and back must come home to within this
+  /// Contrast-limited adaptive histogram equalisation (Zuiderveld 1994) before anything else.
+  Equalize equalize = Equalize::automatic;
+  double clip_limit = 3.0;
+  int clahe_tiles = 8;            ///< per side
+  double dark_grey = 50.0;        ///< automatic: if the image's median is below this,
+  double bright_grey = 205.0;     ///< or above this,
+  double hysteresis_grey = 10.0;  ///< until it is back by this much
+  void fields(Fields& f);
+};
+
+class OpticalFlow {
+ public:
+  OpticalFlow(const OpticalFlowConfig& config, int width_px, int height_px);
+  ~OpticalFlow();
+
+  /// The newest image becomes the last one; `image` the newest. Its pyramid is built once, for both.
+  void push(const CameraFrame& image);
+  /// The newest image as features see it (equalised where that is on); valid until the next push.
+  GreyView newest() const;
+  bool equalized() const;
+
+  /// Needs two images. `guess_px`: where to start looking. Empty: lost.
+  std::vector<std::optional<Eigen::Vector2f>> follow(const std::vector<Eigen::Vector2f>& last_px,
+                                                     const std::vector<Eigen::Vector2f>& guess_px) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace vsslam
