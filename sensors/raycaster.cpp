@@ -97,20 +97,40 @@ void copy(const float (&from)[N], float (&to)[N]) {
   std::memcpy(to, from, sizeof(from));
 }
 
-void load(const RayPacket& rays, RTCRayHit16& packet, int (&valid)[16]) {
-  copy(rays.origin_x, packet.ray.org_x);
-  copy(rays.origin_y, packet.ray.org_y);
-  copy(rays.origin_z, packet.ray.org_z);
-  copy(rays.direction_x, packet.ray.dir_x);
-  copy(rays.direction_y, packet.ray.dir_y);
-  copy(rays.direction_z, packet.ray.dir_z);
-  copy(rays.near_m, packet.ray.tnear);
-  copy(rays.far_m, packet.ray.tfar);
-  for (int i = 0; i < 16; ++i) {
-    packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
-    valid[i] = rays.near_m[i] <= rays.far_m[i] ? -1 : 0;
+/// What Embree works on, with the fields that nobody sets cleared once.
+struct alignas(64) EmbreePacket {
+  RTCRayHit16 ray_hit;
+  int valid[16];
+
+  EmbreePacket() {
+    std::memset(&ray_hit, 0, sizeof(ray_hit));
+    for (unsigned& mask : ray_hit.ray.mask) mask = ~0u;
   }
-}
+  void load(const RayPacket& rays) {
+    RTCRay16& ray = ray_hit.ray;
+    copy(rays.origin_x, ray.org_x);
+    copy(rays.origin_y, ray.org_y);
+    copy(rays.origin_z, ray.org_z);
+    copy(rays.direction_x, ray.dir_x);
+    copy(rays.direction_y, ray.dir_y);
+    copy(rays.direction_z, ray.dir_z);
+    copy(rays.near_m, ray.tnear);
+    copy(rays.far_m, ray.tfar);
+    for (int i = 0; i < 16; ++i) {
+      ray_hit.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+      valid[i] = rays.near_m[i] <= rays.far_m[i] ? -1 : 0;
+    }
+  }
+  /// Both kinds of packet begin alike.
+  template <class Hits>
+  void store(Hits& hits) const {
+    copy(ray_hit.ray.tfar, hits.range_m);
+    copy(ray_hit.hit.u, hits.u);
+    copy(ray_hit.hit.v, hits.v);
+    std::memcpy(hits.object, ray_hit.hit.geomID, sizeof(hits.object));
+    std::memcpy(hits.triangle, ray_hit.hit.primID, sizeof(hits.triangle));
+  }
+};
 
 }  // namespace
 
@@ -135,12 +155,12 @@ struct Raycaster::Impl {
   bool still_dirty = false, moving_dirty = false;
   std::vector<TracedObject> objects;
 
-  void intersect(RTCRayHit16& packet, const int (&valid)[16], bool coherent) const {
+  void intersect(EmbreePacket& packet, bool coherent) const {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     context.flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
-    rtcIntersect16(valid, still, &context, &packet);
-    if (moving_objects > 0) rtcIntersect16(valid, moving, &context, &packet);
+    rtcIntersect16(packet.valid, still, &context, &packet.ray_hit);
+    if (moving_objects > 0) rtcIntersect16(packet.valid, moving, &context, &packet.ray_hit);
   }
 
   /// Range and normal from the plane of the triangle that was hit.
@@ -203,21 +223,36 @@ const World& Raycaster::world() const {
 }
 
 void Raycaster::trace(std::span<const RayPacket> rays, std::span<HitPacket> hits, bool coherent) const {
-  alignas(64) RTCRayHit16 packet;
-  alignas(64) int valid[16];
-  std::memset(&packet, 0, sizeof(packet));
-  for (unsigned& mask : packet.ray.mask) mask = ~0u;
+  EmbreePacket packet;
   for (size_t i = 0; i < rays.size(); ++i) {
-    load(rays[i], packet, valid);
-    impl_->intersect(packet, valid, coherent);
-    HitPacket& hit = hits[i];
-    copy(packet.ray.tfar, hit.range_m);
-    copy(packet.hit.u, hit.u);
-    copy(packet.hit.v, hit.v);
-    std::memcpy(hit.object, packet.hit.geomID, sizeof(hit.object));
-    std::memcpy(hit.triangle, packet.hit.primID, sizeof(hit.triangle));
-    impl_->refine(rays[i], hit);
+    packet.load(rays[i]);
+    impl_->intersect(packet, coherent);
+    packet.store(hits[i]);
+    impl_->refine(rays[i], hits[i]);
   }
+}
+
+void Raycaster::trace(std::span<const RayPacket> rays, std::span<SurfacePacket> surfaces,
+                      bool coherent) const {
+  EmbreePacket packet;
+  for (size_t i = 0; i < rays.size(); ++i) {
+    packet.load(rays[i]);
+    impl_->intersect(packet, coherent);
+    packet.store(surfaces[i]);
+  }
+}
+
+uint32_t Raycaster::occluded(const RayPacket& rays) const {
+  EmbreePacket packet;
+  packet.load(rays);
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded16(packet.valid, impl_->still, &context, &packet.ray_hit.ray);
+  if (impl_->moving_objects > 0) rtcOccluded16(packet.valid, impl_->moving, &context, &packet.ray_hit.ray);
+  uint32_t bits = 0;
+  for (int i = 0; i < 16; ++i)
+    if (packet.valid[i] && packet.ray_hit.ray.tfar[i] < 0) bits |= 1u << i;  // Embree's sign: -infinity
+  return bits;
 }
 
 bool Raycaster::trace_one(const Vec3& origin_world, const Vec3& direction_world, double max_range_m,

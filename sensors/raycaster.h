@@ -34,6 +34,14 @@ struct alignas(64) HitPacket {
   float normal_x[16], normal_y[16], normal_z[16];  ///< geometric, unit, world, towards the ray's origin
 };
 
+/// The least that shading needs; where nothing was hit, object == HitPacket::kNoHit.
+struct alignas(64) SurfacePacket {
+  float range_m[16];      ///< Embree's own: about 1e-6 of it
+  uint32_t object[16];    ///< index into World::objects
+  uint32_t triangle[16];  ///< index within the object, primitives one after another
+  float u[16], v[16];     ///< barycentric coordinates of the second and third vertex
+};
+
 class Raycaster {
  public:
   /// The world must outlive the raycaster.
@@ -45,6 +53,9 @@ class Raycaster {
   /// Traces packets; coherent says that the rays of a packet lie close together. Thread-safe. The two spans
   /// are equally long.
   void trace(std::span<const RayPacket> rays, std::span<HitPacket> hits, bool coherent = true) const;
+  void trace(std::span<const RayPacket> rays, std::span<SurfacePacket> surfaces, bool coherent = true) const;
+  /// Bit i: something lies on ray i between its near_m and far_m.
+  uint32_t occluded(const RayPacket& rays) const;
   /// One ray; returns false if nothing is hit. Convenience for oracles.
   struct Hit {
     double range_m;

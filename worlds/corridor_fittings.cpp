@@ -90,11 +90,8 @@ void add_lamp(FloorPlan& plan, std::vector<Light>& lights, const Leg& leg, doubl
                                  emergency ? palette.emergency_lamp : palette.lamp});
   const Eigen::Vector2d at = leg.to_world(s_m, t_m);
   const std::string group = emergency ? "emergency" : "lamp";
-  Light light{.name = group + "_" + std::to_string(lights.size() + 1), .group = group};
-  light.position_world = {at.x(), at.y(), ceiling_m - 0.05};
-  light.color = emergency ? Vec3f(0.9f, 1.0f, 0.9f) : Vec3f(1.0f, 0.96f, 0.88f);
-  light.intensity = emergency ? 40 : 800;
-  lights.push_back(light);
+  lights.push_back(
+      ceiling_lamp(group, lights.size() + 1, {at.x(), at.y(), ceiling_m}, 4 * half_s_m * half_t_m));
 }
 
 /// Finds free spots for furniture: on the floor, off the routes, clear of each other.

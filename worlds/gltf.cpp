@@ -299,7 +299,8 @@ class ModelWriter {
     node.matrix = doubles(light_frame(source).matrix());
     node.extensions["KHR_lights_punctual"] =
         Value(Value::Object{{"light", Value(static_cast<int>(model_.lights.size()) - 1)}});
-    node.extras = in_extras({{"light_group", Value(source.group)}});
+    node.extras =
+        in_extras({{"light_group", Value(source.group)}, {"light_radius_m", Value(source.radius_m)}});
     model_.nodes.push_back(std::move(node));
   }
 

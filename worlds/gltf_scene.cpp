@@ -130,6 +130,8 @@ class SceneReader {
     if (node.contains("name")) light.name = node["name"].get<std::string>();
     light.group = "lamp";
     extras.get("light_group", light.group);
+    extras.get("light_radius_m", light.radius_m);
+    if (light.radius_m < 0) extras.fail("light_radius_m", "expected 0 or more");
     light.position_world = vsslam::z_up(Vec3(T_root_node.translation()));
     const Vec3 along = vsslam::z_up(Vec3(-T_root_node.linear().col(2)));
     const double length = along.norm();

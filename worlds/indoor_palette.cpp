@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <numbers>
 #include <string>
 
 #include "core/ordered_parallel.h"
@@ -11,6 +12,9 @@
 namespace vsslam {
 
 namespace {
+
+constexpr float kLampLuminance_cdpm2 = 3500, kEmergencyLuminance_cdpm2 = 400;
+const Vec3f kLampColor(1.0f, 0.96f, 0.88f), kEmergencyColor(0.9f, 1.0f, 0.9f);
 
 struct Paint {
   Vec3f srgb;
@@ -126,9 +130,9 @@ class PaletteBuilder {
                              [seed = seed_] { return exit_texture(seed, "exit_sign"); });
     for (const int sign : {palette_.extinguisher_sign, palette_.exit_sign}) at(sign).retro_reflective = true;
     palette_.lamp = add("lamp", {{0.95f, 0.95f, 0.94f}, 0.7f}, 0.3f);
-    at(palette_.lamp).emissive = {1.0f, 0.97f, 0.9f};
+    at(palette_.lamp).emissive = kLampLuminance_cdpm2 * kLampColor;
     palette_.emergency_lamp = add("emergency", {{0.93f, 0.95f, 0.93f}, 0.7f}, 0.3f);
-    at(palette_.emergency_lamp).emissive = {0.5f, 0.7f, 0.5f};
+    at(palette_.emergency_lamp).emissive = kEmergencyLuminance_cdpm2 * kEmergencyColor;
   }
 
   int add_stuff_material(const std::string& name, const Paint& paint, double cell_x_m, double cell_y_m,
@@ -155,6 +159,19 @@ class PaletteBuilder {
 };
 
 }  // namespace
+
+// Luminance times area is the intensity straight down. Off that axis a spot of 90 degrees falls as the square
+// of the cosine: a panel with a louvre.
+Light ceiling_lamp(const std::string& group, size_t number, const Vec3& panel_world, double area_m2) {
+  const bool emergency = group == "emergency";
+  Light light{.name = group + "_" + std::to_string(number), .kind = Light::Kind::spot, .group = group};
+  light.position_world = panel_world - Vec3(0, 0, 0.05);
+  light.color = emergency ? kEmergencyColor : kLampColor;
+  light.intensity = (emergency ? kEmergencyLuminance_cdpm2 : kLampLuminance_cdpm2) * area_m2;
+  light.radius_m = std::sqrt(area_m2 / std::numbers::pi);
+  light.outer_cone_rad = std::numbers::pi / 2;
+  return light;
+}
 
 IndoorPalette make_indoor_palette(uint64_t seed, double wall_height_m, bool textures) {
   return PaletteBuilder(seed, wall_height_m, textures).build();

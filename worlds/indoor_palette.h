@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "worlds/floor_plan.h"
@@ -29,5 +30,8 @@ struct IndoorPalette {
 /// `wall_height_m` is what one repetition of a wall's texture covers, floor to ceiling. Without textures the
 /// materials are plain: enough for the LiDAR, and cheaper.
 IndoorPalette make_indoor_palette(uint64_t seed, double wall_height_m, bool textures);
+
+/// The light of a luminous ceiling panel of the palette's material `group` ("lamp", "emergency"), just below it.
+Light ceiling_lamp(const std::string& group, size_t number, const Vec3& panel_world, double area_m2);
 
 }  // namespace vsslam

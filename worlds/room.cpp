@@ -52,11 +52,7 @@ void hang_lamps(World& world, FloorPlan& plan, const RoomConfig& c, const Indoor
   for (const double x : {-c.length_m / 4, c.length_m / 4})
     for (const double y : {-c.width_m / 4, c.width_m / 4}) {
       plan.ceiling_panels.push_back({{x - 0.6, y - 0.15, x + 0.6, y + 0.15}, palette.lamp});
-      Light light{.name = "lamp_" + std::to_string(world.lights.size() + 1), .group = "lamp"};
-      light.position_world = {x, y, c.height_m - 0.05};
-      light.color = {1.0f, 0.96f, 0.88f};
-      light.intensity = 800;
-      world.lights.push_back(light);
+      world.lights.push_back(ceiling_lamp("lamp", world.lights.size() + 1, {x, y, c.height_m}, 1.2 * 0.3));
     }
 }
 

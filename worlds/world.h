@@ -78,6 +78,7 @@ struct Light {
   Vec3f color = Vec3f::Ones();  ///< linear RGB
   double intensity = 1.0;       ///< cd (point, spot) or lux (directional)
   double range_m = 0;           ///< 0: unlimited
+  double radius_m = 0;          ///< of the shining disc across direction_world, for soft shadows; 0: a point
   double inner_cone_rad = 0, outer_cone_rad = 0.7853981633974483;
 };
 

@@ -39,6 +39,7 @@ inline void expect_same(const Light& a, const Light& b) {
   EXPECT_EQ(a.color, b.color);
   EXPECT_EQ(a.intensity, b.intensity);
   EXPECT_EQ(a.range_m, b.range_m);
+  EXPECT_EQ(a.radius_m, b.radius_m);
   EXPECT_EQ(a.inner_cone_rad, b.inner_cone_rad);
   EXPECT_EQ(a.outer_cone_rad, b.outer_cone_rad);
 }

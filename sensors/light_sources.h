@@ -1,0 +1,55 @@
+// What shines in a world: its lights and its luminous surfaces, in groups that are switched together.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sensors/placed_triangles.h"
+#include "worlds/lighting.h"
+
+namespace vsslam {
+
+/// One light as the light maps see it; levels of the preset are included.
+struct LightSource {
+  enum class Kind {
+    point,
+    spot,
+    directional,
+    surface
+  };  ///< surface: a small piece that shines by Lambert's law
+  Kind kind = Kind::point;
+  int group = 0;
+  Vec3f position_world = Vec3f::Zero(), direction_world = -Vec3f::UnitZ();
+  float intensity = 0;  ///< grey cd; lux if directional
+  float radius_m = 0, range_m = 0;
+  float cos_inner = 1, cos_outer = 0;
+
+  /// Illuminance (lux) of a surface at `position` that faces `normal`, as if nothing stood between.
+  float illuminance(const Vec3f& position_world, const Vec3f& normal_world) const;
+};
+
+/// What a triangle emits.
+struct Glow {
+  size_t triangle = 0;
+  int group = 0;
+  float luminance = 0;    ///< grey cd/m^2
+  bool gathered = false;  ///< lights others by being hit: no source stands for it
+};
+
+struct LightSources {
+  LightSources(const World& world, const PlacedTriangles& triangles, const Illumination& lit);
+
+  std::vector<std::string>
+      groups;  ///< of lights in alphabetical order; then "emissive", "daylight", "headlight"
+  std::vector<LightSource> sources;
+  std::vector<Glow> glows;  ///< in order of triangles
+  int daylight_group = -1, headlight_group = -1;
+  float sky_luminance = 0;  ///< in the zenith
+  bool ambient = false;
+  /// Overcast sky (CIE): three times as bright in the zenith as at the horizon; dim ground below.
+  float sky(float direction_z) const {
+    return sky_luminance * (direction_z > 0 ? (1 + 2 * direction_z) / 3 : 0.07f);
+  }
+};
+
+}  // namespace vsslam
