@@ -1,11 +1,12 @@
 #include "slam/vision/corners.h"
 
+#include <immintrin.h>
+
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
-#include <cstring>
 
 namespace vsslam {
 
@@ -45,29 +46,54 @@ constexpr int kHalf = 2;   // half block
 constexpr int kBlock = 2 * kHalf + 1;
 constexpr int kHalo = kHalf + 1;  // a response needs so many pixels on each side
 constexpr int kGradients = kTile + 2 * kHalf;
-constexpr int kWidth = 48;  // kGradients rounded up, so that all loops have whole vectors
+constexpr int kWidth = 48;  // kGradients and the Sobel mask rounded up, so that all loops have whole vectors
 constexpr float kScale = 1.0f / (64 * kBlock * kBlock);  // Sobel's weights add up to 8
 
 float smaller_eigenvalue(float xx, float xy, float yy) {
   return 0.5f * (xx + yy - std::sqrt((xx - yy) * (xx - yy) + 4 * xy * xy));
 }
 
+// std::sqrt may set errno, which keeps a loop from becoming vector code. Rounded correctly, as it is.
+void square_roots(float (&values)[kTile]) {
+  for (int x = 0; x < kTile; x += 8) _mm256_store_ps(values + x, _mm256_sqrt_ps(_mm256_load_ps(values + x)));
+}
+
 // Responses of one tile. Fixed sizes and plain arrays: the compiler makes vector code of every loop.
 class Tile {
  public:
-  /// (x0, y0): first pixel of the tile; it needs kHalo pixels of image on each side.
+  /// (x0, y0): first pixel of the tile; it needs kHalo pixels of image on each side, and kWidth bytes to be read
+  /// from there on, which may run into the next row.
   void compute(const GreyView& image, int x0, int y0) {
-    load(image, x0 - kHalo, y0 - kHalo);
+    for (int y = 0; y < kTile + 2 * kHalo; ++y) {
+      const uint8_t* row = image.row(y0 - kHalo + y) + x0 - kHalo;
+      for (int x = 0; x < kWidth; ++x) grey_[y][x] = row[x];
+    }
     multiply_gradients();
     for (int y = 0; y < kTile; ++y) respond(y);
   }
-  float operator()(int x, int y) const { return response_[y][x]; }
+
+  /// The strongest pixel of the kStep x kStep pixels from (x0, y0) on.
+  static constexpr int kStep = 8;
+  struct Best {
+    float response;
+    int x, y;
+  };
+  void best_of_blocks(int y0, Best (&best)[kTile / kStep]) const {
+    float column_best[kTile];
+    std::copy_n(response_[y0], kTile, column_best);
+    for (int y = y0 + 1; y < y0 + kStep; ++y)
+      for (int x = 0; x < kTile; ++x)
+        column_best[x] = response_[y][x] > column_best[x] ? response_[y][x] : column_best[x];
+    for (int block = 0; block < kTile / kStep; ++block) {
+      const float* columns = column_best + block * kStep;
+      const int x = block * kStep + static_cast<int>(std::max_element(columns, columns + kStep) - columns);
+      int y = y0;
+      while (response_[y][x] != column_best[x]) ++y;
+      best[block] = {column_best[x], x, y};
+    }
+  }
 
  private:
-  void load(const GreyView& image, int x, int y) {
-    for (int i = 0; i < kTile + 2 * kHalo; ++i)
-      for (int j = 0; j < kTile + 2 * kHalo; ++j) grey_[i][j] = image.row(y + i)[x + j];
-  }
   void multiply_gradients() {
     for (int y = 0; y < kGradients; ++y) {
       const int16_t *a = grey_[y], *b = grey_[y + 1], *c = grey_[y + 2];
@@ -80,20 +106,24 @@ class Tile {
       }
     }
   }
-  static void sum_rows(const int (&products)[kGradients][kWidth], int y, int (&sums)[kWidth]) {
+  // Sums over the blocks of row y.
+  static void sum_blocks(const int (&products)[kGradients][kWidth], int y, float (&sums)[kTile]) {
+    int rows[kWidth];
     for (int x = 0; x < kWidth; ++x)
-      sums[x] =
+      rows[x] =
           products[y][x] + products[y + 1][x] + products[y + 2][x] + products[y + 3][x] + products[y + 4][x];
-  }
-  static float sum(const int (&s)[kWidth], int x) {
-    return kScale * static_cast<float>(s[x] + s[x + 1] + s[x + 2] + s[x + 3] + s[x + 4]);
+    for (int x = 0; x < kTile; ++x)
+      sums[x] = kScale * static_cast<float>(rows[x] + rows[x + 1] + rows[x + 2] + rows[x + 3] + rows[x + 4]);
   }
   void respond(int y) {
-    int xx[kWidth], xy[kWidth], yy[kWidth];
-    sum_rows(xx_, y, xx);
-    sum_rows(xy_, y, xy);
-    sum_rows(yy_, y, yy);
-    for (int x = 0; x < kTile; ++x) response_[y][x] = smaller_eigenvalue(sum(xx, x), sum(xy, x), sum(yy, x));
+    float xx[kTile], xy[kTile], yy[kTile];
+    sum_blocks(xx_, y, xx);
+    sum_blocks(xy_, y, xy);
+    sum_blocks(yy_, y, yy);
+    alignas(32) float root[kTile];
+    for (int x = 0; x < kTile; ++x) root[x] = (xx[x] - yy[x]) * (xx[x] - yy[x]) + 4 * xy[x] * xy[x];
+    square_roots(root);
+    for (int x = 0; x < kTile; ++x) response_[y][x] = 0.5f * (xx[x] + yy[x] - root[x]);
   }
 
   int16_t grey_[kTile + 2 * kHalo][kWidth + 2] = {};
@@ -151,25 +181,25 @@ class CandidateSearch {
   std::vector<Candidate> found;
 
  private:
-  static constexpr int kStep = 8;
-
   void search_tile(int x0, int y0) {
+    constexpr int kStep = Tile::kStep;
     bool computed = false;
-    for (int y = 0; y < kTile; y += kStep)
-      for (int x = 0; x < kTile; x += kStep) {
-        const float half = 0.5f * kStep;
-        if (features_.near({static_cast<float>(x0 + x) + half, static_cast<float>(y0 + y) + half})) continue;
-        if (!computed) tile_.compute(image_, x0, y0);
-        computed = true;
-        take_best(x0, y0, x, y);
+    for (int y = 0; y < kTile; y += kStep) {
+      std::array<bool, kTile / kStep> room;
+      for (size_t block = 0; block < room.size(); ++block) {
+        const Eigen::Vector2f corner(static_cast<float>(x0 + kStep * static_cast<int>(block)),
+                                     static_cast<float>(y0 + y));
+        room[block] = !features_.near(corner + Eigen::Vector2f::Constant(0.5f * kStep));
       }
-  }
-  void take_best(int x0, int y0, int x, int y) {
-    Candidate best{0, 0, 0};
-    for (int j = y; j < y + kStep; ++j)
-      for (int i = x; i < x + kStep; ++i)
-        if (tile_(i, j) > best.response) best = {tile_(i, j), x0 + i, y0 + j};
-    if (best.response > 0) found.push_back(best);
+      if (std::find(room.begin(), room.end(), true) == room.end()) continue;
+      if (!computed) tile_.compute(image_, x0, y0);
+      computed = true;
+      Tile::Best best[kTile / kStep];
+      tile_.best_of_blocks(y, best);
+      for (size_t block = 0; block < room.size(); ++block)
+        if (room[block] && best[block].response > 0)
+          found.push_back({best[block].response, x0 + best[block].x, y0 + best[block].y});
+    }
   }
 
   const GreyView& image_;

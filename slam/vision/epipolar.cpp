@@ -34,14 +34,16 @@ struct Parallax {
     normal = turned.cross(now);
     moved = (now - turned).squaredNorm() > threshold * threshold;
   }
-  // t: direction of translation, its sign included. Sampson's distance, scaled to that of one image. What did
-  // not move fits any translation; what moved must have moved away from the epipole t, or it would be behind.
-  bool fits(const Vec3& t, double threshold) const {
-    if (!moved) return true;
-    const Vec3 a = turned.cross(t), b = now.cross(t);
-    const double error = normal.dot(t);
-    const double slope2 = a.head<2>().squaredNorm() + b.head<2>().squaredNorm();
-    return 2 * error * error <= threshold * threshold * slope2 && normal.dot(a) > 0;
+  // Sign of the direction of translation that the match fits: of t (1), of -t (-1), of both (0); empty: neither.
+  // By Sampson's distance, scaled to that of one image. What did not move fits any translation; what moved must
+  // have moved away from the epipole, or it would lie behind.
+  std::optional<int> fits(const Vec3& t, double threshold) const {
+    if (!moved) return 0;
+    const Vec3 a = turned.cross(t);
+    const double error = normal.dot(t), bx = now.y() * t.z() - t.y(), by = t.x() - now.x() * t.z();
+    const double slope2 = a.x() * a.x() + a.y() * a.y() + bx * bx + by * by;
+    if (2 * error * error > threshold * threshold * slope2) return std::nullopt;
+    return normal.dot(a) > 0 ? 1 : -1;
   }
 };
 
@@ -50,46 +52,58 @@ class TranslationSearch {
   TranslationSearch(const std::vector<RayMatch>& matches, const Mat3& R_now_last, double threshold)
       : threshold_(threshold) {
     for (const RayMatch& match : matches) parallaxes_.emplace_back(match, R_now_last, threshold);
-    keep_if_better(Vec3::Zero());
+    count_still();
   }
   /// Two matches give a direction: it lies in both epipolar planes.
   void draw(int hypotheses, Time stamp) {
     const RandomStream draw(0, "vision.epipolar");
     const size_t n = parallaxes_.size();
-    for (int k = 0; k < hypotheses; ++k) {
+    for (int k = 0; k < hypotheses && !certain_after(k); ++k) {
       const uint64_t bits = draw.bits(static_cast<uint64_t>(stamp.ns), static_cast<uint64_t>(k));
       const size_t i = static_cast<size_t>((bits >> 32) % n),
                    j = static_cast<size_t>((bits & 0xFFFFFFFFu) % n);
-      try_both_signs(parallaxes_[i].normal.cross(parallaxes_[j].normal));
+      keep_if_better(parallaxes_[i].normal.cross(parallaxes_[j].normal));
     }
   }
   /// The direction that fits all inliers best.
   void refine() {
     Mat3 sum = Mat3::Zero();
     for (const Parallax& p : parallaxes_)
-      if (p.fits(best_t_, threshold_)) sum += p.normal * p.normal.transpose();
-    try_both_signs(Eigen::SelfAdjointEigenSolver<Mat3>(sum).eigenvectors().col(0));
+      if (p.fits(best_t_, threshold_).value_or(-1) >= 0) sum += p.normal * p.normal.transpose();
+    keep_if_better(Eigen::SelfAdjointEigenSolver<Mat3>(sum).eigenvectors().col(0));
   }
   size_t inliers() const { return best_count_; }
   std::vector<uint8_t> fits() const {
     std::vector<uint8_t> result;
-    for (const Parallax& p : parallaxes_) result.push_back(p.fits(best_t_, threshold_) ? 1 : 0);
+    for (const Parallax& p : parallaxes_)
+      result.push_back(p.fits(best_t_, threshold_).value_or(-1) >= 0 ? 1 : 0);
     return result;
   }
 
  private:
-  void try_both_signs(const Vec3& t) {
+  void count_still() {
+    for (const Parallax& p : parallaxes_) best_count_ += p.moved ? 0 : 1;
+  }
+  // If the best direction's inliers are all there are, so many draws have hit two of them.
+  bool certain_after(int draws) const {
+    constexpr double kMissed = 1e-3;
+    const double share = static_cast<double>(best_count_) / static_cast<double>(parallaxes_.size());
+    return draws > 0 && std::pow(1 - share * share, draws) < kMissed;
+  }
+  // t or -t, whichever more matches fit.
+  void keep_if_better(const Vec3& t) {
     const double length = t.norm();
     if (length < 1e-15) return;
-    keep_if_better(t / length);
-    keep_if_better(-t / length);
-  }
-  void keep_if_better(const Vec3& t) {
-    size_t count = 0;
-    for (const Parallax& p : parallaxes_) count += p.fits(t, threshold_) ? 1 : 0;
-    if (count <= best_count_) return;
-    best_count_ = count;
-    best_t_ = t;
+    size_t forward = 0, backward = 0;
+    for (const Parallax& p : parallaxes_) {
+      const std::optional<int> sign = p.fits(t, threshold_);
+      if (!sign) continue;
+      forward += *sign >= 0 ? 1 : 0;
+      backward += *sign <= 0 ? 1 : 0;
+    }
+    if (std::max(forward, backward) <= best_count_) return;
+    best_count_ = std::max(forward, backward);
+    best_t_ = (forward >= backward ? 1 : -1) / length * t;
   }
 
   double threshold_;  // tangent of an angle

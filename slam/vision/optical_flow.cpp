@@ -84,7 +84,8 @@ struct OpticalFlow::Impl {
   // From one image to another, starting at `to`, which becomes the result. False: lost.
   std::vector<uint8_t> search(const Image& a, const Image& b, const Points& from, Points& to,
                               int levels) const {
-    const cv::TermCriteria until(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 30, 0.01);
+    // Finer steps changed the error against the truth by less than a thousandth of a pixel.
+    const cv::TermCriteria until(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 20, 0.03);
     std::vector<uint8_t> found;
     cv::calcOpticalFlowPyrLK(a.pyramid, b.pyramid, from, to, found, cv::noArray(), window(), levels, until,
                              cv::OPTFLOW_USE_INITIAL_FLOW);
