@@ -44,12 +44,23 @@ struct DepthView::Neighbour {
   float distance2() const { return a * a + b * b; }
 };
 
-struct DepthView::Plane {
+// The plane through three points that enclose a ray.
+struct DepthView::Surface {
   Eigen::Vector3f normal;  // towards the camera
-  float offset;            // normal . point, negative
+  float offset_m;          // normal . point, negative
+  float spread_m;          // of the three points' depths
+  float reach2;            // largest distance2 of the three
 
+  Surface(const Neighbour& a, const Neighbour& b, const Neighbour& c)
+      : normal((b.point - a.point).cross(c.point - a.point).normalized()),
+        spread_m(std::max({a.point.z(), b.point.z(), c.point.z()}) -
+                 std::min({a.point.z(), b.point.z(), c.point.z()})),
+        reach2(std::max({a.distance2(), b.distance2(), c.distance2()})) {
+    if (normal.dot(a.point) > 0) normal = -normal;
+    offset_m = normal.dot(a.point);
+  }
   // Positive: on the camera's side.
-  float height_m(const Eigen::Vector3f& point) const { return normal.dot(point) - offset; }
+  float height_m(const Eigen::Vector3f& point) const { return normal.dot(point) - offset_m; }
 };
 
 namespace {
@@ -143,33 +154,34 @@ std::optional<double> DepthView::depth_m(const Eigen::Vector2f& ray_camera) cons
   for (int layer = 0; layer < kLayers; ++layer) {
     const std::optional<Three> three = nearest_three_around(around);
     if (!three) return std::nullopt;
-    const Eigen::Vector3f a = around[(*three)[0]].point, b = around[(*three)[1]].point,
-                          c = around[(*three)[2]].point;
-    Plane plane{(b - a).cross(c - a).normalized(), 0};
-    if (plane.normal.dot(a) > 0) plane.normal = -plane.normal;
-    plane.offset = plane.normal.dot(a);
-
-    // Old points behind a surface show between its scan lines; then the surface is what surrounds the ray.
-    std::vector<Neighbour> in_front;
-    for (const Neighbour& n : around)
-      if (plane.height_m(n.point) > tolerance_m(n.point)) in_front.push_back(n);
-    if (surrounds(in_front)) {
-      around = std::move(in_front);
-      continue;
+    const Surface surface(around[(*three)[0]], around[(*three)[1]], around[(*three)[2]]);
+    std::vector<Neighbour> before = points_before(surface, around);
+    if (!surrounds(before)) {
+      if (!supports(around, surface, ray)) return std::nullopt;
+      return surface.offset_m / surface.normal.dot(ray);
     }
-
-    const float spread = std::max({a.z(), b.z(), c.z()}) - std::min({a.z(), b.z(), c.z()});
-    const float sine = -plane.normal.dot(ray.normalized());
-    if (spread > config_.max_spread_m || sine < std::sin(radians(config_.min_graze_deg))) return std::nullopt;
-    // An edge: some of what is as near to the ray lies elsewhere.
-    const float farthest2 = std::max(
-        {around[(*three)[0]].distance2(), around[(*three)[1]].distance2(), around[(*three)[2]].distance2()});
-    for (const Neighbour& n : around)
-      if (n.distance2() <= farthest2 && std::abs(plane.height_m(n.point)) > tolerance_m(n.point))
-        return std::nullopt;
-    return plane.offset / plane.normal.dot(ray);
+    // Old points behind a surface show between its scan lines; what surrounds the ray hides them.
+    around = std::move(before);
   }
   return std::nullopt;
+}
+
+std::vector<DepthView::Neighbour> DepthView::points_before(const Surface& surface,
+                                                           const std::vector<Neighbour>& points) const {
+  std::vector<Neighbour> result;
+  for (const Neighbour& p : points)
+    if (surface.height_m(p.point) > tolerance_m(p.point)) result.push_back(p);
+  return result;
+}
+
+bool DepthView::supports(const std::vector<Neighbour>& points, const Surface& surface,
+                         const Eigen::Vector3f& ray) const {
+  if (!(surface.spread_m <= config_.max_spread_m)) return false;
+  const float sine_of_graze = -surface.normal.dot(ray.normalized());
+  if (!(sine_of_graze >= std::sin(radians(config_.min_graze_deg)))) return false;
+  return std::none_of(points.begin(), points.end(), [&](const Neighbour& p) {  // else an edge is here
+    return p.distance2() <= surface.reach2 && std::abs(surface.height_m(p.point)) > tolerance_m(p.point);
+  });
 }
 
 }  // namespace vsslam

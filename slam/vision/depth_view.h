@@ -45,9 +45,12 @@ class DepthView {
  private:
   static constexpr float kNearest = 0.1f;  // m
   struct Neighbour;
-  struct Plane;
+  struct Surface;
   std::vector<Neighbour> neighbours(const Eigen::Vector2f& ray) const;
   bool surrounds(const std::vector<Neighbour>& points) const;
+  std::vector<Neighbour> points_before(const Surface& surface, const std::vector<Neighbour>& points) const;
+  bool supports(const std::vector<Neighbour>& points, const Surface& surface,
+                const Eigen::Vector3f& ray) const;
   float tolerance_m(const Eigen::Vector3f& point) const;
 
   DepthViewConfig config_;

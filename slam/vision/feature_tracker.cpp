@@ -7,6 +7,7 @@
 
 #include "core/errors.h"
 #include "slam/vision/camera_model.h"
+#include "slam/vision/window_shape.h"
 
 namespace vsslam {
 

@@ -2,7 +2,9 @@
 
 #include <cmath>
 
+#include "slam/vision/corner_response.h"
 #include "slam/vision/corners.h"
+#include "slam/vision/window_shape.h"
 #include "tests/slam/visual_scene.h"
 
 namespace vsslam {
@@ -30,6 +32,24 @@ TEST(Corners, RespondToTheWeakerGradient) {
   const CameraFrame roof = draw(32, 32, [](int x, int y) { return 3 * std::abs(x - 16) + 4 * y; });
   EXPECT_FLOAT_EQ(corner_response(view(roof), 16, 16), 9 * 4 / 5.0f);  // the ridge itself has dx = 0
   EXPECT_FLOAT_EQ(corner_response(view(roof), 10, 16), 0);
+}
+
+TEST(Corners, RespondAlikeOneByOneAndInTiles) {
+  const CameraFrame image = render(WaveTexture(5), small_camera(), before_plane(), {}, {.noise_grey = 3});
+  ResponseTile tile;
+  tile.compute(view(image), 40, 50);
+  for (int y = 0; y < ResponseTile::kSize; y += ResponseTile::kStep) {
+    const auto best = tile.best_of_blocks(y);
+    for (size_t block = 0; block < best.size(); ++block) {
+      float strongest = 0;
+      for (int v = y; v < y + ResponseTile::kStep; ++v)
+        for (int u = 0; u < ResponseTile::kStep; ++u)
+          strongest =
+              std::max(strongest, corner_response(view(image), 40 + 8 * static_cast<int>(block) + u, 50 + v));
+      EXPECT_EQ(best[block].response, strongest);
+      EXPECT_EQ(corner_response(view(image), 40 + best[block].x, 50 + best[block].y), strongest);
+    }
+  }
 }
 
 TEST(Corners, AreFoundWhereSquaresMeet) {
