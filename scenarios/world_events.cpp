@@ -9,16 +9,9 @@ void WheelSlipEvent::fields(Fields& f) {
   f("right_friction", right_friction, between(0, 10));
 }
 
-void LightEvent::fields(Fields& f) {
-  f("at_s", at_s, non_negative());
-  f("group", group);
-  f("level", level, non_negative());
-}
-
 void EventsConfig::fields(Fields& f) {
   sensors.fields(f);
   f("wheel_slip", wheel_slip);
-  f("lights", lights);
 }
 
 }  // namespace vsslam

@@ -1,7 +1,6 @@
 // What changes during a run, by the simulated clock.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "core/config.h"
@@ -17,19 +16,10 @@ struct WheelSlipEvent {
   void fields(Fields& f);
 };
 
-/// Lamps that go off, on, or are dimmed. For cameras; a LiDAR does not notice.
-struct LightEvent {
-  double at_s = 0;
-  std::string group;  ///< of lights; empty: all
-  double level = 0;   ///< share of the intensity in the world file
-  void fields(Fields& f);
-};
-
 /// The `events` section of a scenario.
 struct EventsConfig {
   SensorEvents sensors;  ///< its keys stand in `events` itself
   std::vector<WheelSlipEvent> wheel_slip;
-  std::vector<LightEvent> lights;
   void fields(Fields& f);
 };
 

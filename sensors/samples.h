@@ -42,6 +42,21 @@ struct WheelMeasurement {
   double slip_left_mps = 0, slip_right_mps = 0;
 };
 
-using Measurement = std::variant<ImuMeasurement, WheelMeasurement, LidarMeasurement>;
+struct CameraMeasurement {
+  CameraFrame frame;
+  Time true_stamp;     ///< middle of the exposure
+  Time end;            ///< of the exposure, true time
+  SE3 T_world_camera;  ///< truth at true_stamp
+  double exposure_s = 0, gain = 1;
+  // At true_stamp, row-major; empty unless the settings ask for them.
+  std::vector<float> clean_grey;  ///< the image without blur, noise and quantisation, 0 .. 255
+  std::vector<float> depth_m;     ///< along the camera's z axis; infinite: nothing there
+  /// Where each pixel's static point was one period of the camera earlier, minus where it is: px. Infinite where it was
+  /// behind the camera; empty if there was no truth then. Backwards, because an image is delivered before the next pose
+  /// exists.
+  std::vector<Vec2f> flow_px;
+};
+
+using Measurement = std::variant<ImuMeasurement, WheelMeasurement, LidarMeasurement, CameraMeasurement>;
 
 }  // namespace vsslam

@@ -29,6 +29,11 @@ bool BlockedSector::covers(double azimuth_rad) const {
   return 360 * (turns - std::floor(turns)) <= to_deg - from_deg;
 }
 
+void CoveredLens::fields(Fields& f) {
+  EventSpan::fields(f);
+  f("transmission", transmission, between(0, 1));
+}
+
 void ImuSpikes::fields(Fields& f) {
   EventSpan::fields(f);
   f("probability", probability, between(0, 1));
@@ -39,7 +44,10 @@ void ImuSpikes::fields(Fields& f) {
 void ClockError::fields(Fields& f) {
   EventSpan::fields(f);
   f.choice("sensor", sensor,
-           {{"lidar", SensorKind::lidar}, {"imu", SensorKind::imu}, {"wheels", SensorKind::wheels}});
+           {{"lidar", SensorKind::lidar},
+            {"imu", SensorKind::imu},
+            {"wheels", SensorKind::wheels},
+            {"camera", SensorKind::camera}});
   f("offset_s", offset_s, between(-10, 10));
   f("jitter_s", jitter_s, between(0, 1));
 }
@@ -53,15 +61,24 @@ void ObjectEvent::fields(Fields& f) {
   f("duration_s", duration_s, non_negative());
 }
 
+void LightEvent::fields(Fields& f) {
+  f("at_s", at_s, non_negative());
+  f("group", group);
+  f("level", level, non_negative());
+}
+
 void SensorEvents::fields(Fields& f) {
   f("lidar_dropouts", lidar_dropouts);
   f("imu_dropouts", imu_dropouts);
   f("wheel_dropouts", wheel_dropouts);
+  f("camera_dropouts", camera_dropouts);
   f("lidar_lost_packets", lidar_lost_packets);
   f("lidar_blocked_sectors", lidar_blocked_sectors);
+  f("camera_covered", camera_covered);
   f("imu_spikes", imu_spikes);
   f("clocks", clocks);
   f("objects", objects);
+  f("lights", lights);
 }
 
 bool any_lasts(const std::vector<SensorDropout>& spans, Time stamp) {

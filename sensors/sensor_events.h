@@ -16,7 +16,7 @@ struct EventSpan {
   void fields(Fields& f);
 };
 
-enum class SensorKind { lidar, imu, wheels };
+enum class SensorKind { lidar, imu, wheels, camera };
 
 /// The sensor delivers nothing.
 struct SensorDropout : EventSpan {};
@@ -32,6 +32,12 @@ struct LostPackets : EventSpan {
 struct BlockedSector : EventSpan {
   double from_deg = 0, to_deg = 0;
   bool covers(double azimuth_rad) const;
+  void fields(Fields& f);
+};
+
+/// Something covers the camera's lens. This share of the light that should enter reaches the pixels, all of them alike.
+struct CoveredLens : EventSpan {
+  double transmission = 0.002;
   void fields(Fields& f);
 };
 
@@ -61,15 +67,25 @@ struct ObjectEvent {
   void fields(Fields& f);
 };
 
-/// All lists may be empty. `fields` lists the keys of the scenario's `events` that concern sensors and
-/// objects.
+/// Lamps that go off, on, or are dimmed. For cameras; a LiDAR does not notice.
+struct LightEvent {
+  double at_s = 0;
+  std::string group;  ///< of lights; empty: all
+  double level = 0;   ///< share of the intensity that the lighting gives them
+  void fields(Fields& f);
+};
+
+/// All lists may be empty. `fields` lists the keys of the scenario's `events` that concern sensors,
+/// objects and lights.
 struct SensorEvents {
-  std::vector<SensorDropout> lidar_dropouts, imu_dropouts, wheel_dropouts;
+  std::vector<SensorDropout> lidar_dropouts, imu_dropouts, wheel_dropouts, camera_dropouts;
   std::vector<LostPackets> lidar_lost_packets;
   std::vector<BlockedSector> lidar_blocked_sectors;
+  std::vector<CoveredLens> camera_covered;
   std::vector<ImuSpikes> imu_spikes;
   std::vector<ClockError> clocks;
   std::vector<ObjectEvent> objects;
+  std::vector<LightEvent> lights;
   void fields(Fields& f);
 };
 

@@ -1,0 +1,31 @@
+#include "sensors/camera_flow.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace vsslam {
+
+std::vector<Vec2f> flow(const CameraOptics& optics, const ViewRays& rays, const std::vector<float>& depth_m,
+                                  const SE3& T_b_a) {
+  const Vec2f behind = Vec2f::Constant(std::numeric_limits<float>::infinity());
+  const Mat3 R_b_a = T_b_a.matrix3();
+  std::vector<Vec2f> flow_px(depth_m.size(), behind);
+  for (size_t i = 0; i < depth_m.size(); ++i) {
+    // The point over its depth, so that infinity needs no case of its own.
+    const Vec3 ray_a = rays.direction_camera[i].cast<double>();
+    const double inverse_depth = 1 / static_cast<double>(depth_m[i]);
+    const Vec3 ray_b = R_b_a * (ray_a / ray_a.z()) + inverse_depth * T_b_a.translation;
+    const std::optional<Vec2> from = optics.project(ray_a), to = optics.project(ray_b);
+    if (from && to) flow_px[i] = (*to - *from).cast<float>();
+  }
+  return flow_px;
+}
+
+double largest(const std::vector<Vec2f>& flow_px) {
+  float most = 0;
+  for (const Vec2f& f : flow_px) most = std::max(most, f.norm());
+  return most;
+}
+
+}  // namespace vsslam
