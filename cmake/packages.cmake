@@ -12,6 +12,7 @@ find_package(TinyGLTF REQUIRED)
 find_package(embree 3 REQUIRED)
 find_package(Ceres REQUIRED)
 find_package(nanoflann REQUIRED)
+find_package(PNG REQUIRED)
 find_package(GTest REQUIRED)
 # Bullet in double precision; CMake's own FindBullet knows the float build only.
 pkg_check_modules(BULLET REQUIRED IMPORTED_TARGET bullet-float64)

@@ -30,13 +30,14 @@ struct WheelCalibration {
   double effective_track_m = 0.9;  ///< of the differential-drive model that fits the skid-steered robot
 };
 
-/// Pinhole with radial-tangential distortion (OpenCV's k1 k2 p1 p2).
+/// Pinhole with radial-tangential distortion (OpenCV's k1 k2 p1 p2). Pixel centres have whole coordinates.
 struct CameraCalibration {
   SE3 T_base_camera;  ///< camera frame: x right, y down, z forward
   int width_px = 640, height_px = 480;
   double fx_px = 384.2, fy_px = 384.2, cx_px = 319.5, cy_px = 236.4;
   double k1 = 0, k2 = 0, p1 = 0, p2 = 0;
   double rate_hz = 30.0;
+  double time_offset_s = 0;  ///< added to the camera's stamps gives the IMU's time
 };
 
 struct RigCalibration {

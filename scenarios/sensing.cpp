@@ -6,7 +6,7 @@ namespace vsslam {
 
 Sensing::Sensing(const Scenario& scenario, const World& world, uint64_t seed, StageClock* clock)
     : clock_(clock),
-      rig_(world, scenario.rig, scenario.events.sensors, seed),
+      rig_(world, scenario.rig, scenario.events.sensors, seed, scenario.lighting),
       T_lidar_base_(scenario.rig.mounts.lidar.T_base_sensor().inverse()) {}
 
 Chunk Sensing::next(const Motion& motion) {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <limits>
 #include <numeric>
 
 #include "core/ordered_parallel.h"
@@ -20,13 +22,33 @@ std::vector<float> cos_axis(const ViewRays& rays) {
   return cosines;
 }
 
-// A lattice over the pixel's square, its centre of gravity in the middle.
+// A permutation of 0 .. samples - 1, spread against its own index: (k + 1) g mod (samples + 1) - 1 with the factor g that
+// correlates least.
+std::vector<int> spread_order(int samples) {
+  std::vector<int> best;
+  int least = std::numeric_limits<int>::max();
+  for (int g = 2; g <= samples; ++g) {
+    if (std::gcd(g, samples + 1) > 1) continue;
+    std::vector<int> order;
+    int covariance = 0;
+    for (int k = 0; k < samples; ++k) {
+      order.push_back((k + 1) * g % (samples + 1) - 1);
+      covariance += (2 * k - (samples - 1)) * (2 * order.back() - (samples - 1));
+    }
+    if (std::abs(covariance) >= least) continue;
+    least = std::abs(covariance);
+    best = order;
+  }
+  return best;
+}
+
+// Over the pixel's square, its centre of gravity in the middle.
 std::vector<ViewRays> sample_rays(const CameraOptics& optics, int samples) {
   std::vector<ViewRays> rays;
-  int step = std::max(1, static_cast<int>(0.618 * samples));
-  while (std::gcd(step, samples) > 1) --step;
-  for (int k = 0; samples > 1 && k < samples; ++k)
-    rays.push_back(optics.rays({(k * step % samples + 0.5) / samples - 0.5, (k + 0.5) / samples - 0.5}));
+  const std::vector<int> order = spread_order(samples);
+  for (size_t k = 0; k < order.size(); ++k)
+    rays.push_back(
+        optics.rays({(order[k] + 0.5) / samples - 0.5, (static_cast<double>(k) + 0.5) / samples - 0.5}));
   return rays;
 }
 
@@ -75,11 +97,11 @@ std::vector<CameraMeasurement> Camera::take(int count, const Trajectory& traject
   std::vector<CameraMeasurement> images(shots.size());
   std::vector<double> mean_grey(shots.size());
   workshops_.resize(std::max(workshops_.size(), shots.size()));
-  parallel_pieces(shots.size(), 1, [&](size_t i, size_t) {
-    mean_grey[i] = take_one(shots[i], workshops_[i], images[i]);
-  });
+  parallel_pieces(shots.size(), 1,
+                  [&](size_t i, size_t) { mean_grey[i] = take_one(shots[i], workshops_[i], images[i]); });
   for (size_t i = 0; i < static_cast<size_t>(count); ++i, ++next_) {
-    const auto taken = std::find_if(shots.begin(), shots.end(), [&](const Shot& s) { return s.index == next_; });
+    const auto taken =
+        std::find_if(shots.begin(), shots.end(), [&](const Shot& s) { return s.index == next_; });
     if (taken == shots.end())
       control_.missed();
     else
@@ -89,7 +111,8 @@ std::vector<CameraMeasurement> Camera::take(int count, const Trajectory& traject
 }
 
 SE3 Camera::Shot::T_world_camera(double share) const {
-  return T_world_camera(stamp + Duration{std::llround((share - 0.5) * static_cast<double>(exposure.time.ns))});
+  return T_world_camera(stamp +
+                        Duration{std::llround((share - 0.5) * static_cast<double>(exposure.time.ns))});
 }
 
 double Camera::transmission(Time stamp) const {
@@ -110,8 +133,8 @@ double Camera::take_one(const Shot& shot, Workshop& workshop, CameraMeasurement&
   out.frame.grey.resize(centre_rays_.direction_camera.size());
 
   gather_light(shot, workshop);
-  const double mean_grey = sensor_.expose(workshop.luminance, shot.exposure,
-                                          static_cast<uint64_t>(shot.index), out.frame.grey);
+  const double mean_grey =
+      sensor_.expose(workshop.luminance, shot.exposure, static_cast<uint64_t>(shot.index), out.frame.grey);
   if (config_.truth.any()) add_truth(shot, workshop, out);
   return mean_grey;
 }
@@ -143,7 +166,8 @@ void Camera::gather_light(const Shot& shot, Workshop& workshop) const {
   for (int k = 0; k < views; ++k) {
     const auto sample = static_cast<size_t>(k % config_.samples_per_pixel);
     const ViewRays& rays = sample_rays_.empty() ? centre_rays_ : sample_rays_[sample];
-    shot.source(shot.T_world_camera((k + 0.5) / views), rays, workshop.view);
+    const double share = config_.motion_blur ? (k + 0.5) / views : 0.5;
+    shot.source(shot.T_world_camera(share), rays, workshop.view);
     for (size_t i = 0; i < light.size(); ++i) light[i] += workshop.view.luminance[i];
   }
   for (float& l : light) l /= static_cast<float>(views);

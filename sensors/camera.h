@@ -68,7 +68,8 @@ class Camera {
 
   Time stamp_of(int64_t index) const;
   double transmission(Time stamp) const;
-  double take_one(const Shot& shot, Workshop& workshop, CameraMeasurement& out) const;  // returns the mean grey
+  double take_one(const Shot& shot, Workshop& workshop,
+                  CameraMeasurement& out) const;  // returns the mean grey
   int blur_views(const Shot& shot, Workshop& workshop) const;
   void gather_light(const Shot& shot, Workshop& workshop) const;
   void add_truth(const Shot& shot, Workshop& workshop, CameraMeasurement& out) const;

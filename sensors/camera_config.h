@@ -9,11 +9,11 @@ namespace vsslam {
 /// Steers exposure time and gain so that the mean grey of the image meets a target.
 struct AutoExposureConfig {
   bool enabled = true;
-  double target_grey = 110;                                ///< mean of the image, 0..255
-  double min_exposure_s = 5e-5, max_exposure_s = 0.003;    ///< exposure goes first; the cap limits blur
-  double min_gain = 1, max_gain = 16;                      ///< gain does the rest
-  double share_per_frame = 0.3;                            ///< of the (logarithmic) way to go, 1: at once
-  int delay_frames = 3;                                    ///< from measuring an image to the first that it changes
+  double target_grey = 110;                              ///< mean of the image, 0..255
+  double min_exposure_s = 5e-5, max_exposure_s = 0.003;  ///< exposure goes first; the cap limits blur
+  double min_gain = 1, max_gain = 16;                    ///< gain does the rest
+  double share_per_frame = 0.3;                          ///< of the (logarithmic) way to go, 1: at once
+  int delay_frames = 3;  ///< from measuring an image to the first that it changes
   void fields(Fields& f);
 };
 

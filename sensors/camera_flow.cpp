@@ -7,7 +7,7 @@
 namespace vsslam {
 
 std::vector<Vec2f> flow(const CameraOptics& optics, const ViewRays& rays, const std::vector<float>& depth_m,
-                                  const SE3& T_b_a) {
+                        const SE3& T_b_a) {
   const Vec2f behind = Vec2f::Constant(std::numeric_limits<float>::infinity());
   const Mat3 R_b_a = T_b_a.matrix3();
   std::vector<Vec2f> flow_px(depth_m.size(), behind);

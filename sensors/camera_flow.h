@@ -11,7 +11,7 @@ namespace vsslam {
 /// from pose `b` minus that from pose `a`, px. Infinite depth moves by rotation alone; infinite where the point lies
 /// behind `b`.
 std::vector<Vec2f> flow(const CameraOptics& optics, const ViewRays& rays, const std::vector<float>& depth_m,
-                                  const SE3& T_b_a);
+                        const SE3& T_b_a);
 
 /// Length of the longest of these vectors, px; points behind count as infinite.
 double largest(const std::vector<Vec2f>& flow_px);

@@ -50,8 +50,8 @@ Vec2 CameraOptics::undistort(const Vec2& distorted) const {
   }
   const Vec2 pixel = focal_px_.cwiseProduct(distorted) + centre_px_;
   throw InputError(fmt::format(
-      "rig.sensors.camera: the distortion k1 {} k2 {} p1 {} p2 {} has no inverse at pixel ({:.0f}, {:.0f})", k1_, k2_,
-      p1_, p2_, pixel.x(), pixel.y()));
+      "rig.sensors.camera: the distortion k1 {} k2 {} p1 {} p2 {} has no inverse at pixel ({:.0f}, {:.0f})",
+      k1_, k2_, p1_, p2_, pixel.x(), pixel.y()));
 }
 
 std::optional<Vec2> CameraOptics::project(const Vec3& p_camera) const {

@@ -10,8 +10,6 @@
 
 namespace vsslam {
 
-using Vec2 = Eigen::Vector2d;
-
 class CameraOptics {
  public:
   /// Throws InputError if the distortion cannot be inverted somewhere in the image.

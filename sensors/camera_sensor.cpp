@@ -75,7 +75,8 @@ std::vector<float> normals(const RandomStream& stream, size_t count) {
 ImageSensor::ImageSensor(const CameraConfig& config, std::span<const float> cos_axis, uint64_t seed)
     : config_(config), shot_(seed, "camera.shot"), read_(seed, "camera.read") {
   for (const float cosine : cos_axis)
-    vignetting_.push_back(static_cast<float>(std::pow(static_cast<double>(cosine), config.vignetting_exponent)));
+    vignetting_.push_back(
+        static_cast<float>(std::pow(static_cast<double>(cosine), config.vignetting_exponent)));
   make_fixed_pattern(seed);
   if (config.gamma != 1) make_response();
 }
@@ -124,7 +125,8 @@ double ImageSensor::expose(std::span<const float> luminance, const Exposure& exp
     for (size_t i = 0; i < count; i += 8) {
       const EightPixels at{luminance.data() + first + i, gain_.data() + first + i,
                            offset_e_.empty() ? nullptr : offset_e_.data() + first + i,
-                           config_.shot_noise ? shot + i : nullptr, config_.read_noise_e > 0 ? read + i : nullptr};
+                           config_.shot_noise ? shot + i : nullptr,
+                           config_.read_noise_e > 0 ? read + i : nullptr};
       _mm256_storeu_si256(reinterpret_cast<__m256i*>(levels + i), levels_of_eight(at, c));
     }
     uint8_t* const out = grey.data() + first;

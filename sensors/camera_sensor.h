@@ -36,9 +36,9 @@ class ImageSensor {
 
   CameraConfig config_;
   RandomStream shot_, read_;
-  std::vector<float> vignetting_;   ///< per pixel
-  std::vector<float> gain_;         ///< per pixel: vignetting and fixed pattern
-  std::vector<float> offset_e_;     ///< per pixel; empty: none
+  std::vector<float> vignetting_;  ///< per pixel
+  std::vector<float> gain_;        ///< per pixel: vignetting and fixed pattern
+  std::vector<float> offset_e_;    ///< per pixel; empty: none
   static constexpr size_t kResponseLevels = 65536;
   std::vector<uint8_t> response_;  ///< grey of each level; empty: linear
 };

@@ -18,7 +18,7 @@ class LightSwitches {
 
  private:
   size_t groups_;
-  std::vector<LightEvent> events_;  // in order of time
+  std::vector<LightEvent> events_;   // in order of time
   std::vector<int> group_of_event_;  // -1: all
 };
 

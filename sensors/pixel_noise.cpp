@@ -41,10 +41,12 @@ __m256 minus_log(__m256 x) {
 
 // sqrt(2) erfinv(u) / u as a function of -log(1 - u^2): Giles' polynomials for the centre and the tails.
 __m256 normal_over_u(__m256 w) {
-  constexpr float kCentre[] = {2.81022636e-08f, 3.43273939e-07f,  -3.5233877e-06f,  -4.39150654e-06f, 0.00021858087f,
-                               -0.00125372503f, -0.00417768164f, 0.246640727f,     1.50140941f};
-  constexpr float kTail[] = {-0.000200214257f, 0.000100950558f, 0.00134934322f, -0.00367342844f, 0.00573950773f,
-                             -0.0076224613f,   0.00943887047f,  1.00167406f,    2.83297682f};
+  constexpr float kCentre[] = {2.81022636e-08f,  3.43273939e-07f, -3.5233877e-06f,
+                               -4.39150654e-06f, 0.00021858087f,  -0.00125372503f,
+                               -0.00417768164f,  0.246640727f,    1.50140941f};
+  constexpr float kTail[] = {-0.000200214257f, 0.000100950558f, 0.00134934322f,
+                             -0.00367342844f,  0.00573950773f,  -0.0076224613f,
+                             0.00943887047f,   1.00167406f,     2.83297682f};
   __m256 value = polynomial(kCentre, _mm256_sub_ps(w, set(2.5f)));
   const __m256 in_tail = _mm256_cmp_ps(w, set(5), _CMP_GE_OQ);
   if (_mm256_movemask_ps(in_tail) != 0)

@@ -1,17 +1,20 @@
 #include "sensors/rig.h"
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 #include <utility>
 
 #include "sensors/faults.h"
 #include "sensors/lidar.h"
 #include "sensors/moving_objects.h"
+#include "sensors/rig_camera.h"
 
 namespace vsslam {
 
 struct Rig::Impl {
-  Impl(const World& world, const RigConfig& c, const SensorEvents& e, uint64_t seed)
+  Impl(const World& world, const RigConfig& c, const SensorEvents& e, uint64_t seed,
+       const LightingConfig& lighting)
       : config(c),
         events(e),
         T_base_lidar(c.mounts.lidar.T_base_sensor()),
@@ -21,7 +24,11 @@ struct Rig::Impl {
         imu(c.sensors.imu, c.mounts.imu.T_base_sensor(), seed),
         wheels(c.sensors.wheels, seed),
         clocks(e.clocks, seed),
-        spikes(seed, "events.imu_spikes") {}
+        spikes(seed, "events.imu_spikes") {
+    if (c.sensors.camera.enabled)
+      camera.emplace(world, raycaster, moving, c.sensors.camera, c.mounts.camera.T_base_sensor(), lighting, e,
+                     seed);
+  }
 
   RigConfig config;
   SensorEvents events;
@@ -31,6 +38,7 @@ struct Rig::Impl {
   Lidar lidar;
   Imu imu;
   WheelEncoder wheels;
+  std::optional<RigCamera> camera;
   ClockErrors clocks;
   RandomStream spikes;
 
@@ -44,16 +52,19 @@ struct Rig::Impl {
     next_imu = imu.first_index(first);
     next_wheels = wheels.first_index(first);
     next_revolution = lidar.power_on(first);
+    if (camera) camera->power_on(first);
     started = true;
   }
   void place_objects(Time stamp);
   std::optional<ImuMeasurement> measure_imu(const Trajectory& trajectory);
   std::optional<WheelMeasurement> measure_wheels(const std::function<WheelState(Time)>& state);
   std::optional<LidarMeasurement> measure_lidar(const Trajectory& trajectory);
+  std::optional<CameraMeasurement> measure_camera(Time until, const Trajectory& trajectory);
 };
 
-Rig::Rig(const World& world, const RigConfig& config, const SensorEvents& events, uint64_t seed)
-    : impl_(std::make_unique<Impl>(world, config, events, seed)) {}
+Rig::Rig(const World& world, const RigConfig& config, const SensorEvents& events, uint64_t seed,
+         const LightingConfig& lighting)
+    : impl_(std::make_unique<Impl>(world, config, events, seed, lighting)) {}
 Rig::~Rig() = default;
 
 Raycaster& Rig::raycaster() {
@@ -62,8 +73,9 @@ Raycaster& Rig::raycaster() {
 
 Time Rig::needed_from() const {
   if (!impl_->started) return Time{0};
-  return std::min({impl_->imu.stamp(impl_->next_imu), impl_->wheels.stamp(impl_->next_wheels),
-                   impl_->lidar.begin(impl_->next_revolution)});
+  const Time others = std::min({impl_->imu.stamp(impl_->next_imu), impl_->wheels.stamp(impl_->next_wheels),
+                                impl_->lidar.begin(impl_->next_revolution)});
+  return impl_->camera ? std::min(others, impl_->camera->needed_from()) : others;
 }
 
 void Rig::advance(Time until, const Trajectory& trajectory, const std::function<WheelState(Time)>& wheels,
@@ -77,15 +89,18 @@ void Rig::advance(Time until, const Trajectory& trajectory, const std::function<
   };
   while (true) {
     const Time imu = impl.imu.stamp(impl.next_imu), wheel = impl.wheels.stamp(impl.next_wheels),
-               lidar = impl.lidar.end(impl.next_revolution);
-    const Time next = std::min({imu, wheel, lidar});
+               lidar = impl.lidar.end(impl.next_revolution),
+               camera = impl.camera ? impl.camera->next_end() : Time{std::numeric_limits<int64_t>::max()};
+    const Time next = std::min({imu, wheel, lidar, camera});
     if (next > until) return;
     if (next == imu)
       emit(impl.measure_imu(trajectory));
     else if (next == wheel)
       emit(impl.measure_wheels(wheels));
-    else
+    else if (next == lidar)
       emit(impl.measure_lidar(trajectory));
+    else
+      emit(impl.measure_camera(until, trajectory));
   }
 }
 
@@ -116,6 +131,12 @@ std::optional<LidarMeasurement> Rig::Impl::measure_lidar(const Trajectory& traje
   LidarMeasurement m = lidar.scan(revolution, trajectory, T_base_lidar);
   m.scan.stamp = clocks.stamp(SensorKind::lidar, begin, 1 / config.sensors.lidar.rate_hz);
   m.scan.end = m.scan.stamp + (end - begin);
+  return m;
+}
+
+std::optional<CameraMeasurement> Rig::Impl::measure_camera(Time until, const Trajectory& trajectory) {
+  auto m = camera->measure(until, trajectory, [this](Time stamp) { place_objects(stamp); });
+  if (m) m->frame.stamp = clocks.stamp(SensorKind::camera, m->true_stamp, 1 / config.sensors.camera.rate_hz);
   return m;
 }
 

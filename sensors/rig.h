@@ -7,6 +7,7 @@
 
 #include "core/calibration.h"
 #include "core/config.h"
+#include "sensors/camera_config.h"
 #include "sensors/imu.h"
 #include "sensors/lidar_config.h"
 #include "sensors/raycaster.h"
@@ -15,6 +16,7 @@
 #include "sensors/wheel_encoder.h"
 #include "sim/trajectory.h"
 #include "sim/wheel_state.h"
+#include "worlds/lighting.h"
 
 namespace vsslam {
 
@@ -31,6 +33,7 @@ struct RigConfig {
     LidarConfig lidar;
     ImuConfig imu;
     WheelEncoderConfig wheels;
+    CameraConfig camera;
     void fields(Fields& f);
   } sensors;
   struct Mounts {
@@ -49,14 +52,16 @@ struct RigConfig {
 /// Samples all sensors from the truth trajectory.
 class Rig {
  public:
-  /// The world must outlive the rig. Throws InputError if an event names an object that the world has not.
-  Rig(const World& world, const RigConfig& config, const SensorEvents& events, uint64_t seed);
+  /// The world must outlive the rig. Throws InputError if an event names an object that the world has not, or,
+  /// if there is a camera, a group of lights. Only a camera needs the lighting; its light maps are baked here.
+  Rig(const World& world, const RigConfig& config, const SensorEvents& events, uint64_t seed,
+      const LightingConfig& lighting = {});
   ~Rig();
 
   /// Emits every measurement whose acquisition ends at or before `until`, in order of the end of its
-  /// acquisition (ties: IMU, wheels, LiDAR), as far as the trajectory reaches; the rest follows with the next
+  /// acquisition (ties: IMU, wheels, LiDAR, camera), as far as the trajectory reaches; the rest follows with the next
   /// call. Measuring starts at trajectory.begin() of the first call, but not before time 0. Objects with
-  /// events are where they are at the beginning of each LiDAR scan.
+  /// events are where they are at the beginning of each LiDAR scan and in the middle of each image's exposure.
   void advance(Time until, const Trajectory& trajectory, const std::function<WheelState(Time)>& wheels,
                const std::function<void(Measurement&&)>& sink);
   /// Earliest time of the truth that is still needed.

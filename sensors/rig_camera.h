@@ -15,8 +15,9 @@ namespace vsslam {
 class RigCamera {
  public:
   /// Bakes the light maps. World, raycaster and objects must outlive it.
-  RigCamera(const World& world, const Raycaster& raycaster, const MovingObjects& objects, const CameraConfig& config,
-            const SE3& T_base_camera, const LightingConfig& lighting, const SensorEvents& events, uint64_t seed);
+  RigCamera(const World& world, const Raycaster& raycaster, const MovingObjects& objects,
+            const CameraConfig& config, const SE3& T_base_camera, const LightingConfig& lighting,
+            const SensorEvents& events, uint64_t seed);
 
   void power_on(Time first) { camera_.power_on(first); }
   /// End of exposure of the next image (or of one that a dropout swallows).

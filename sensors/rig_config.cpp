@@ -17,6 +17,7 @@ void RigConfig::Sensors::fields(Fields& f) {
   f("lidar", lidar);
   f("imu", imu);
   f("wheels", wheels);
+  f("camera", camera);
 }
 
 void RigConfig::Mounts::fields(Fields& f) {
@@ -50,7 +51,20 @@ RigCalibration RigConfig::calibration(double wheel_radius_m, double effective_tr
   imu.accel_bias_walk_mps3_rthz = sensors.imu.accel_bias_walk_mps3_rthz;
   calibration.wheels.wheel_radius_m = wheel_radius_m;
   calibration.wheels.effective_track_m = effective_track_m;
-  calibration.camera.T_base_camera = mounts.camera.T_base_sensor();
+  CameraCalibration& camera = calibration.camera;
+  const CameraConfig& c = sensors.camera;
+  camera.T_base_camera = mounts.camera.T_base_sensor();
+  camera.width_px = c.width_px;
+  camera.height_px = c.height_px;
+  camera.fx_px = c.fx_px;
+  camera.fy_px = c.fy_px;
+  camera.cx_px = c.cx_px;
+  camera.cy_px = c.cy_px;
+  camera.k1 = c.k1;
+  camera.k2 = c.k2;
+  camera.p1 = c.p1;
+  camera.p2 = c.p2;
+  camera.rate_hz = c.rate_hz;
   return calibration;
 }
 
