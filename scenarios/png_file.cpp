@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <png.h>
 
+#include <utility>
+
 #include "core/errors.h"
 
 namespace vsslam {

@@ -7,9 +7,9 @@
 
 namespace vsslam {
 
-/// The normals of one image. A 32-bit counter is hashed twice under a 64-bit key; the hash goes through the inverse of
-/// the normal distribution (M. Giles, "Approximating the erfinv function", GPU Computing Gems, 2011): relative error of
-/// a normal below 1e-5, tails to 6.3 sigma.
+/// The normals of one image. A 32-bit counter is hashed twice under a 64-bit key; the sum of the hash's bytes is bent
+/// into a normal: moments to the sixth within 1e-3 of the true ones, tails right to 5 sigma, none beyond 5.64, in steps
+/// of 0.007.
 class PixelNoise {
  public:
   static constexpr int kBlock = 64;
