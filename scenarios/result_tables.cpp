@@ -20,6 +20,14 @@ void put_estimate(CsvWriter& csv, const ScanReport& report) {
   put_block(csv, information.rotation);
 }
 
+void put_memory(CsvWriter& csv, const std::optional<MemoryDecision>& memory) {
+  if (memory) {
+    csv(int{memory->distinct})(int{memory->novel})(int{memory->stored()});
+  } else {
+    csv.empty(3);
+  }
+}
+
 void put_truth(CsvWriter& csv, const DegeneracyTruth& truth) {
   csv(truth.information.translation.alpha())(truth.information.rotation.alpha());
   put_block(csv, truth.information.translation);
@@ -46,7 +54,7 @@ std::string scans_csv(const MappingRun& estimation, const LoopScore& loops) {
     const ScanReport& report = estimation.reports()[i];
     const DegeneracyTruth& truth = estimation.degeneracy_truth()[i];
     csv(report.scan)(report.stamp)(report.key);
-    csv.empty(3);
+    put_memory(csv, report.memory);
     put_estimate(csv, report);
     put_truth(csv, truth);
     csv(report.correspondences)(report.iterations)(int{report.converged})(int{report.used_prior_only});

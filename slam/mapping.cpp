@@ -42,6 +42,7 @@ ScanReport Mapping::add(const OdometryScan& scan) {
     impl.add_key(scan);
     // 2 ... and looks for loops, which correct all key scans (1)
     impl.close_loops(scan.end);
+    report.memory = impl.loop_closer.decision();
     impl.optimize();
   }
   // 3 the other scans move with their key scan

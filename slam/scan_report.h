@@ -1,9 +1,12 @@
 // What became of one scan.
 #pragma once
 
+#include <optional>
+
 #include "core/se3.h"
 #include "core/time.h"
 #include "slam/lidar/information.h"
+#include "slam/loop/memory_decision.h"
 
 namespace vsslam {
 
@@ -17,8 +20,9 @@ struct ScanReport {
   int correspondences = 0;
   int iterations = 0;
   bool converged = false;
-  int degenerate_directions = 0;  ///< of 6, held by the prior
-  bool used_prior_only = false;   ///< too few correspondences: the prior alone gave the pose
+  int degenerate_directions = 0;         ///< of 6, held by the prior
+  std::optional<MemoryDecision> memory;  ///< of a key scan, by a method that selects
+  bool used_prior_only = false;          ///< too few correspondences: the prior alone gave the pose
 };
 
 }  // namespace vsslam

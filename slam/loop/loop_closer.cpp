@@ -64,6 +64,10 @@ std::vector<LoopRecord> LoopCloser::add(const std::vector<KeyScan>& keys, Time n
   return {*record};
 }
 
+std::optional<MemoryDecision> LoopCloser::decision() const {
+  return impl_->detector ? impl_->detector->decision() : std::nullopt;
+}
+
 std::vector<StoredDescriptor> LoopCloser::stored() const {
   std::vector<StoredDescriptor> out;
   if (!impl_->detector || !impl_->detector->database()) return out;

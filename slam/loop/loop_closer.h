@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "slam/graph/pose_graph.h"
 #include "slam/key_scan.h"
 #include "slam/loop/loop_config.h"
+#include "slam/loop/memory_decision.h"
 
 namespace vsslam {
 
@@ -33,7 +35,8 @@ struct LoopRecord {
   SE3 T_match_query;            ///< ICP's result, or the guess if ICP did not run
   SE3 T_match_query_predicted;  ///< from the poses before this loop
   bool accepted = false;
-  /// "accepted", "distance" (descriptors differ), "few_points", "not_converged", "fitness", "overlap".
+  /// "accepted", "distance" (descriptors differ), "few_points", "not_converged", "fitness", "overlap",
+  /// "gap" (too far from where odometry expects it).
   std::string why;
   double edge_variance = 0;  ///< rad^2 and m^2, of an accepted loop
   double cauchy_scale = 0;   ///< of the edge's robust kernel; 0: quadratic
@@ -66,6 +69,8 @@ class LoopCloser {
   /// scan. keys[i].id is i. Afterwards points_lidar of the newest key scan is no longer needed.
   std::vector<LoopRecord> add(const std::vector<KeyScan>& keys, Time now);
 
+  /// What selective memory decided about the newest key scan; absent where the method does not select.
+  std::optional<MemoryDecision> decision() const;
   std::vector<StoredDescriptor> stored() const;
   DatabaseSize database_size(const std::vector<KeyScan>& keys) const;
 

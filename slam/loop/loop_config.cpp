@@ -10,10 +10,13 @@
 namespace vsslam {
 
 namespace {
-constexpr std::array<std::pair<Method, std::string_view>, 3> kNames{{
+constexpr std::array<std::pair<Method, std::string_view>, 6> kNames{{
     {Method::lvi_sam_no_loop, "lvi-sam-no-loop"},
     {Method::lvi_sam, "lvi-sam"},
     {Method::sc_lvi_sam, "sc-lvi-sam"},
+    {Method::vs_slam_no_vd, "vs-slam-no-vd"},
+    {Method::vs_slam_no_st, "vs-slam-no-st"},
+    {Method::vs_slam, "vs-slam"},
 }};
 }  // namespace
 
@@ -70,6 +73,9 @@ void VerificationConfig::fields(Fields& f) {
   f("min_source_points", min_source_points, at_least(3));
   f("min_target_points", min_target_points, at_least(3));
   f("centroid_guess_m", centroid_guess_m, non_negative());
+  f("max_gap_m", max_gap_m, non_negative());
+  f("max_gap_share", max_gap_share, between(0, 1));
+  f("max_gap_rad", max_gap_rad, between(0, 4));
 }
 
 void LviSamLoopConfig::fields(Fields& f) {
@@ -91,12 +97,48 @@ void ScLviSamLoopConfig::fields(Fields& f) {
   f("cauchy_scale", cauchy_scale, non_negative());
 }
 
+void VirtualDescriptorConfig::fields(Fields& f) {
+  f("distances", distances, between(0, 16));
+  f("spacing_m", spacing_m, positive());
+}
+
+void SelectiveMemoryConfig::fields(Fields& f) {
+  f("scene_recognition", scene_recognition);
+  f("key_descriptors", key_descriptors);
+  f("alpha_t_th", alpha_t_th, between(0, 1));
+  f("alpha_r_th", alpha_r_th, between(0, 1));
+  f("key_distance", key_distance, between(0, 2));
+}
+
+VsSlamLoopConfig VsSlamLoopConfig::variant(Method method) const {
+  VsSlamLoopConfig config = *this;
+  if (method == Method::vs_slam_no_vd) config.virtual_descriptors.distances = 0;
+  if (method == Method::vs_slam_no_st) {
+    config.memory.scene_recognition = false;
+    config.memory.key_descriptors = false;
+  }
+  return config;
+}
+
+void VsSlamLoopConfig::fields(Fields& f) {
+  f("period_s", period_s, non_negative());
+  f("max_distance", max_distance, between(0, 2));
+  f("exclude_recent_s", exclude_recent_s, non_negative());
+  f("exclude_recent_scans", exclude_recent_scans, at_least(1));
+  f("virtual_descriptors", virtual_descriptors);
+  f("memory", memory);
+  f("verification", verification);
+  f("edge_variance", edge_variance, positive());
+  f("cauchy_scale", cauchy_scale, non_negative());
+}
+
 void LoopConfig::fields(Fields& f) {
   f("scan_context", scan_context);
   f("local_map", local_map);
   f("exhaustive_pairs", exhaustive_pairs, at_least(0));
   f("lvi_sam", lvi_sam);
   f("sc_lvi_sam", sc_lvi_sam);
+  f("vs_slam", vs_slam);
 }
 
 }  // namespace vsslam

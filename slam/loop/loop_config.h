@@ -9,9 +9,9 @@
 
 namespace vsslam {
 
-enum class Method { lvi_sam_no_loop, lvi_sam, sc_lvi_sam };
+enum class Method { lvi_sam_no_loop, lvi_sam, sc_lvi_sam, vs_slam_no_vd, vs_slam_no_st, vs_slam };
 
-/// "lvi-sam-no-loop", "lvi-sam", "sc-lvi-sam".
+/// "lvi-sam-no-loop", "lvi-sam", "sc-lvi-sam", "vs-slam-no-vd", "vs-slam-no-st", "vs-slam".
 std::string_view method_name(Method method);
 /// Throws InputError with the nearest name.
 Method parse_method(std::string_view name);
@@ -53,6 +53,10 @@ struct VerificationConfig {
   /// Clouds whose centroids are at least this far apart at the guess are first moved onto each other; 0:
   /// never.
   double centroid_guess_m = 0;
+  /// How far the loop may be from where odometry expects it: so much, and so much of the way since the match;
+  /// 0 and 0: any.
+  double max_gap_m = 0, max_gap_share = 0;
+  double max_gap_rad = 0;  ///< likewise its rotation; 0: any
   void fields(Fields& f);
 };
 
@@ -80,6 +84,43 @@ struct ScLviSamLoopConfig {
   void fields(Fields& f);
 };
 
+/// 8 N virtual sensor positions around the query, at the distances M, 2 M, ... N M.
+struct VirtualDescriptorConfig {
+  int distances = 2;       ///< N; 0: none
+  double spacing_m = 1.5;  ///< M
+  void fields(Fields& f);
+};
+
+/// Which key scans are searched for and stored.
+struct SelectiveMemoryConfig {
+  bool scene_recognition = true;  ///< off: every scene counts as distinct
+  bool key_descriptors = true;    ///< off: every descriptor counts as novel
+  /// Oblateness from which on a scene is structurally similar; 1 - 1 / the condition number of the block.
+  double alpha_t_th = 0.98, alpha_r_th = 0.98;
+  double key_distance = 0.25;  ///< d_th: a descriptor further from the last stored one is novel
+  void fields(Fields& f);
+};
+
+/// `vs-slam` and its ablations: `vs-slam-no-vd` has no virtual descriptors, `vs-slam-no-st` stores and searches
+/// every key scan.
+struct VsSlamLoopConfig {
+  double period_s = 1.0;
+  double max_distance = 0.3;  ///< of descriptors; the candidate's must be smaller
+  double exclude_recent_s = 30.0;
+  int exclude_recent_scans = 30;
+  VirtualDescriptorConfig virtual_descriptors;
+  SelectiveMemoryConfig memory;
+  /// ICP's fitness is a weak test in corridors, which fit each other: the scan must also overlap with the map,
+  /// and lie where odometry can have drifted to.
+  VerificationConfig verification{
+      .icp = {}, .min_overlap = 0.6, .max_gap_m = 1.0, .max_gap_share = 0.03, .max_gap_rad = 0.35};
+  double edge_variance = 0.5;  ///< rad^2 and m^2
+  double cauchy_scale = 1.0;   ///< of the edge's robust kernel; 0: quadratic
+  /// The settings of one of the three methods.
+  VsSlamLoopConfig variant(Method method) const;
+  void fields(Fields& f);
+};
+
 struct LoopConfig {
   ScanContextConfig scan_context;
   LocalMapConfig local_map;
@@ -88,6 +129,7 @@ struct LoopConfig {
   int exhaustive_pairs = 2000;
   LviSamLoopConfig lvi_sam;
   ScLviSamLoopConfig sc_lvi_sam;
+  VsSlamLoopConfig vs_slam;
   void fields(Fields& f);
 };
 

@@ -3,20 +3,11 @@
 #include <algorithm>
 #include <limits>
 
+#include "slam/loop/vs_slam_detector.h"
+
 namespace vsslam {
 
 namespace {
-
-LoopRecord candidate(const KeyScan& query, const KeyScan& match) {
-  LoopRecord record;
-  record.query = query.id;
-  record.match = match.id;
-  record.query_stamp = query.stamp;
-  record.match_stamp = match.stamp;
-  record.T_match_query_predicted = match.T_map_base.inverse() * query.T_map_base;
-  record.T_match_query = record.T_match_query_predicted;
-  return record;
-}
 
 /// LVI-SAM: the nearest key pose that is old enough; ICP starts where odometry says.
 class NearestKeyDetector final : public LoopDetector {
@@ -35,7 +26,7 @@ class NearestKeyDetector final : public LoopDetector {
       nearest_m = distance_m;
     }
     if (!nearest) return std::nullopt;
-    return candidate(query, *nearest);
+    return loop_candidate(query, *nearest);
   }
   double period_s() const override { return config_.period_s; }
   const VerificationConfig& verification() const override { return config_.verification; }
@@ -76,7 +67,8 @@ class ScanContextDetector final : public LoopDetector {
     const size_t eligible = database_.count_until(query.id - config_.exclude_recent_scans, query.stamp);
     const std::optional<DescriptorMatch> match = database_.find({&newest_, 1}, eligible);
     if (!match) return std::nullopt;
-    LoopRecord record = candidate(query, keys[static_cast<size_t>(database_.entries()[match->entry].key)]);
+    LoopRecord record =
+        loop_candidate(query, keys[static_cast<size_t>(database_.entries()[match->entry].key)]);
     record.descriptor_distance = match->best.distance;
     record.runner_up_distance = match->runner_up_distance.value_or(-1);
     record.yaw_rad = match->best.yaw_rad();
@@ -117,6 +109,17 @@ class ScanContextDetector final : public LoopDetector {
 
 }  // namespace
 
+LoopRecord loop_candidate(const KeyScan& query, const KeyScan& match) {
+  LoopRecord record;
+  record.query = query.id;
+  record.match = match.id;
+  record.query_stamp = query.stamp;
+  record.match_stamp = match.stamp;
+  record.T_match_query_predicted = match.T_map_base.inverse() * query.T_map_base;
+  record.T_match_query = record.T_match_query_predicted;
+  return record;
+}
+
 SE3 guess_from_descriptor(double yaw_rad, const Eigen::Vector2d& virtual_offset_m, const SE3& T_base_lidar) {
   // The query's sensor, moved to its virtual position, stands where the match's stood, turned by the yaw.
   const SE3 T_match_virtual = SE3::from_rpy({0, 0, yaw_rad}, Vec3::Zero());
@@ -133,6 +136,10 @@ std::unique_ptr<LoopDetector> make_detector(const LoopConfig& config, Method met
       return std::make_unique<NearestKeyDetector>(config.lvi_sam);
     case Method::sc_lvi_sam:
       return std::make_unique<ScanContextDetector>(config, lidar, clock);
+    case Method::vs_slam_no_vd:
+    case Method::vs_slam_no_st:
+    case Method::vs_slam:
+      return std::make_unique<VsSlamDetector>(config.vs_slam.variant(method), config, lidar, clock);
   }
   return nullptr;
 }

@@ -7,6 +7,7 @@
 
 #include "slam/loop/descriptor_database.h"
 #include "slam/loop/loop_closer.h"
+#include "slam/loop/memory_decision.h"
 
 namespace vsslam {
 
@@ -16,6 +17,8 @@ class LoopDetector {
 
   /// Learns of every key scan, in order.
   virtual void remember(const KeyScan& /*key*/) {}
+  /// What became of the newest key scan, of a method that selects.
+  virtual std::optional<MemoryDecision> decision() const { return std::nullopt; }
   /// The candidate for the newest key scan: ids, descriptors and the guess T_match_query. A candidate with
   /// `why` set is recorded but not verified.
   virtual std::optional<LoopRecord> detect(const std::vector<KeyScan>& keys) = 0;
@@ -28,6 +31,9 @@ class LoopDetector {
   /// Key scans whose neighbourhoods may become targets of verification.
   virtual std::vector<int> possible_matches(const std::vector<KeyScan>& keys) const = 0;
 };
+
+/// A record with ids, stamps and what the poses say.
+LoopRecord loop_candidate(const KeyScan& query, const KeyScan& match);
 
 /// T_match_query (base frames) that a descriptor match suggests.
 SE3 guess_from_descriptor(double yaw_rad, const Eigen::Vector2d& virtual_offset_m, const SE3& T_base_lidar);

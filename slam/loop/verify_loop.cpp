@@ -17,10 +17,27 @@ SE3 meet(const SE3& T_match_query, const Cloud& source_query, const Cloud& targe
   return {T_match_query.rotation, T_match_query.translation + offset};
 }
 
-std::string verdict(const LoopRecord& record, const VerificationConfig& config) {
+/// Length of the odometry's way between two key scans.
+double way_m(const std::vector<KeyScan>& keys, int from, int to) {
+  double length_m = 0;
+  for (size_t i = static_cast<size_t>(from); i < static_cast<size_t>(to); ++i)
+    length_m += (keys[i + 1].T_odom_base.translation - keys[i].T_odom_base.translation).norm();
+  return length_m;
+}
+
+/// Whether odometry can have drifted as far as the loop says.
+bool consistent(const LoopRecord& record, double way_m, const VerificationConfig& config) {
+  const SE3 gap = record.T_match_query_predicted.inverse() * record.T_match_query;
+  const bool near = (config.max_gap_m <= 0 && config.max_gap_share <= 0) ||
+                    gap.translation.norm() <= config.max_gap_m + config.max_gap_share * way_m;
+  return near && (config.max_gap_rad <= 0 || gap.angle() <= config.max_gap_rad);
+}
+
+std::string verdict(const LoopRecord& record, double way_m, const VerificationConfig& config) {
   if (!record.icp_converged) return "not_converged";
   if (record.fitness_m2 > config.max_fitness_m2) return "fitness";
   if (record.overlap < config.min_overlap) return "overlap";
+  if (!consistent(record, way_m, config)) return "gap";
   return "accepted";
 }
 
@@ -44,7 +61,7 @@ void verify_loop(const std::vector<KeyScan>& keys, const SE3& T_base_lidar, cons
   record.inlier_ratio = icp.inlier_ratio;
   record.overlap = icp.overlap;
   record.T_match_query = icp.T_target_source;
-  record.why = verdict(record, config);
+  record.why = verdict(record, way_m(keys, record.match, record.query), config);
   record.accepted = record.why == "accepted";
 }
 

@@ -6,58 +6,10 @@
 
 #include "core/errors.h"
 #include "slam/loop/local_map.h"
-#include "tests/slam/loop_room.h"
+#include "tests/slam/loop_laps.h"
 
 namespace vsslam {
 namespace {
-
-constexpr double kMountHeight = 0.6;
-const SE3 kBaseLidar(Quat::Identity(), {0.2, 0, 0.35});
-const LidarCalibration kLidar{.T_base_lidar = kBaseLidar, .mount_height_m = kMountHeight};
-
-struct Drive {
-  std::vector<KeyScan> keys;
-  std::vector<SE3> truth;  // T_map_base without drift
-};
-
-/// Laps on a circle in a room, a key scan every metre and 1.5 s; every second lap in the other direction.
-/// The belief drifts along x.
-Drive laps(int count, double drift_m_per_key) {
-  Drive drive;
-  for (int id = 0; id < count; ++id) {
-    const int per_lap = 25, lap = id / per_lap;
-    const bool back = lap % 2 == 1;
-    const double angle = 2 * M_PI * (back ? per_lap - id % per_lap : id % per_lap) / per_lap;
-    const SE3 T_map_base =
-        planar(4 * std::cos(angle), 4 * std::sin(angle), angle + (back ? -M_PI / 2 : M_PI / 2),
-               kMountHeight - kBaseLidar.translation.z());
-    KeyScan key;
-    key.id = id;
-    key.stamp = Time::from_seconds(1.5 * id);
-    key.points_lidar = share(scan_room(cluttered_room(), T_map_base * kBaseLidar));
-    key.features_lidar = share(voxel_means(*key.points_lidar, 0.3));
-    key.T_map_base = SE3(Quat::Identity(), {drift_m_per_key * id, 0, 0}) * T_map_base;
-    drive.keys.push_back(std::move(key));
-    drive.truth.push_back(T_map_base);
-  }
-  return drive;
-}
-
-std::vector<LoopRecord> play(LoopCloser& closer, const Drive& drive) {
-  std::vector<LoopRecord> all;
-  std::vector<KeyScan> so_far;
-  for (const KeyScan& key : drive.keys) {
-    so_far.push_back(key);
-    for (LoopRecord& record : closer.add(so_far, key.stamp)) all.push_back(std::move(record));
-  }
-  return all;
-}
-
-double error_m(const LoopRecord& record, const Drive& drive) {
-  const SE3 truth = drive.truth[static_cast<size_t>(record.match)].inverse() *
-                    drive.truth[static_cast<size_t>(record.query)];
-  return (truth.inverse() * record.T_match_query).translation.norm();
-}
 
 TEST(LoopCloser, WithoutLoopsNothingHappens) {
   LoopCloser closer({}, Method::lvi_sam_no_loop, kLidar, nullptr);

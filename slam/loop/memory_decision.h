@@ -1,0 +1,13 @@
+// What selective memory decides about a key scan (Song et al. 2025, section 4.2).
+#pragma once
+
+namespace vsslam {
+
+struct MemoryDecision {
+  bool distinct =
+      true;  ///< s = 1: the scene is not structurally similar along some direction; else not searched
+  bool novel = true;                                 ///< m = 1: unlike the last stored descriptor (6)
+  bool stored() const { return distinct && novel; }  ///< tau = s m (7)
+};
+
+}  // namespace vsslam

@@ -1,0 +1,57 @@
+#include "slam/loop/vs_slam_detector.h"
+
+#include "slam/loop/virtual_descriptors.h"
+
+namespace vsslam {
+
+VsSlamDetector::VsSlamDetector(const VsSlamLoopConfig& config, const LoopConfig& common,
+                               const LidarCalibration& lidar, StageClock* clock)
+    : config_(config),
+      scan_context_(common.scan_context),
+      lidar_(lidar),
+      clock_(clock),
+      memory_(config.memory),
+      database_(common.exhaustive_pairs) {}
+
+void VsSlamDetector::remember(const KeyScan& key) {
+  const StageTimer timer(clock_, "loop_descriptor");
+  query_ =
+      describe_query(*key.points_lidar, lidar_.mount_height_m, scan_context_, config_.virtual_descriptors);
+  decision_ = memory_.decide(key.information, query_);
+  if (decision_->stored()) database_.add(key.id, key.stamp, query_.front().context);
+}
+
+// A similar scene is neither stored nor searched; a distinct one is searched whether it was stored or not.
+std::optional<LoopRecord> VsSlamDetector::detect(const std::vector<KeyScan>& keys) {
+  if (!decision_->distinct) return std::nullopt;
+  const StageTimer timer(clock_, "loop_search");
+  const KeyScan& query = keys.back();
+  const size_t eligible =
+      database_.count_until(query.id - config_.exclude_recent_scans,
+                            query.stamp - Duration::from_seconds(config_.exclude_recent_s));
+  const std::optional<DescriptorMatch> match = database_.find(query_, eligible);
+  if (!match) return std::nullopt;
+  const QueryDescriptor& winner = query_[match->descriptor];
+  LoopRecord record = loop_candidate(query, keys[static_cast<size_t>(database_.entries()[match->entry].key)]);
+  record.descriptor_distance = match->best.distance;
+  record.runner_up_distance = match->runner_up_distance.value_or(-1);
+  record.virtual_id = winner.virtual_id;
+  record.virtual_offset_m = winner.offset_m;
+  record.yaw_rad = match->best.yaw_rad();
+  record.T_match_query = guess_from_descriptor(record.yaw_rad, record.virtual_offset_m, lidar_.T_base_lidar);
+  if (record.descriptor_distance >= config_.max_distance) record.why = "distance";
+  return record;
+}
+
+void VsSlamDetector::weigh(LoopRecord& record) const {
+  record.edge_variance = config_.edge_variance;
+  record.cauchy_scale = config_.cauchy_scale;
+}
+
+std::vector<int> VsSlamDetector::possible_matches(const std::vector<KeyScan>&) const {
+  std::vector<int> ids;
+  for (const DescriptorDatabase::Entry& entry : database_.entries()) ids.push_back(entry.key);
+  return ids;
+}
+
+}  // namespace vsslam

@@ -1,0 +1,35 @@
+// Loop candidates of VS-SLAM and of its ablations.
+#pragma once
+
+#include "slam/loop/loop_detector.h"
+#include "slam/loop/selective_memory.h"
+
+namespace vsslam {
+
+/// Scan Context with virtual descriptors on the query and a selected database.
+class VsSlamDetector final : public LoopDetector {
+ public:
+  VsSlamDetector(const VsSlamLoopConfig& config, const LoopConfig& common, const LidarCalibration& lidar,
+                 StageClock* clock);
+
+  void remember(const KeyScan& key) override;
+  std::optional<MemoryDecision> decision() const override { return decision_; }
+  std::optional<LoopRecord> detect(const std::vector<KeyScan>& keys) override;
+  double period_s() const override { return config_.period_s; }
+  const VerificationConfig& verification() const override { return config_.verification; }
+  void weigh(LoopRecord& record) const override;
+  const DescriptorDatabase* database() const override { return &database_; }
+  std::vector<int> possible_matches(const std::vector<KeyScan>& keys) const override;
+
+ private:
+  VsSlamLoopConfig config_;
+  ScanContextConfig scan_context_;
+  LidarCalibration lidar_;
+  StageClock* clock_;
+  SelectiveMemory memory_;
+  DescriptorDatabase database_;
+  std::vector<QueryDescriptor> query_;  // of the newest key scan
+  std::optional<MemoryDecision> decision_;
+};
+
+}  // namespace vsslam
