@@ -1,0 +1,44 @@
+// The window as a least-squares problem: its factors, its solution, and what it leaves behind when a frame goes.
+#pragma once
+
+#include "slam/vision/marginalization.h"
+#include "slam/vision/vio_window.h"
+
+namespace vsslam {
+
+struct VioModel {
+  VioConfig config;
+  ImuCalibration imu;  ///< densities already times VioConfig::imu_noise_factor
+  SE3 T_imu_camera;
+};
+VioModel make_model(const VioConfig& config, const RigCalibration& rig);
+
+/// Features with a depth that two frames have seen; the `max_features` longest of them, by id.
+std::vector<int64_t> usable_features(const VioWindow& window, int max_features);
+
+struct WindowProblem {
+  std::vector<int64_t> features;  ///< by index of their inverse depth
+  Linearization at;
+  std::vector<WindowFactor> factors;
+};
+/// Refers to the window's prior and preintegrations.
+WindowProblem make_problem(const VioWindow& window, const std::vector<int64_t>& features,
+                           const VioModel& model);
+
+struct VioSolution {
+  double initial_cost = 0, final_cost = 0;
+  int iterations = 0;
+  bool usable = false;
+};
+/// Optimises all states and the depths of the usable features, and writes them into the window.
+VioSolution solve(VioWindow& window, const VioModel& model, int max_iterations);
+
+/// Removes the oldest frame; the prior keeps what its measurements said of the others.
+void leave_oldest(VioWindow& window, const VioModel& model);
+/// Removes the newest frame; what it saw is forgotten, and what the prior said of it is kept by the others.
+void leave_newest(VioWindow& window, const VioModel& model);
+
+/// Covariance of the newest state, tangent order [pose; velocity; gyro bias; accel bias].
+Eigen::Matrix<double, 15, 15> newest_covariance(const VioWindow& window, const VioModel& model);
+
+}  // namespace vsslam

@@ -1,0 +1,70 @@
+// The only file of the visual-inertial odometry that knows Ceres' solver.
+#include <ceres/ceres.h>
+
+#include "slam/vision/vio_problem.h"
+
+namespace vsslam {
+
+namespace {
+
+ceres::Solver::Options solver_options(int max_iterations) {
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::DENSE_SCHUR;
+  options.trust_region_strategy_type = ceres::DOGLEG;
+  options.dense_linear_algebra_library_type = ceres::EIGEN;  // the others round as the host's LAPACK does
+  options.num_threads = 1;                                   // sums of several threads are not repeatable
+  options.max_num_iterations = max_iterations;               // and no limit on wall-clock time
+  options.function_tolerance = 1e-4;
+  options.logging_type = ceres::SILENT;
+  return options;
+}
+
+ceres::Problem::Options problem_options() {
+  ceres::Problem::Options options;
+  options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  options.disable_all_safety_checks = true;
+  return options;
+}
+
+}  // namespace
+
+VioSolution solve(VioWindow& window, const VioModel& model, int max_iterations) {
+  WindowProblem ours = make_problem(window, usable_features(window, model.config.max_features), model);
+  WindowValues& x = ours.at.now;
+  PoseManifold manifold;
+  ceres::CauchyLoss cauchy(1.0);
+  ceres::Problem problem(problem_options());
+  ceres::Solver::Options options = solver_options(max_iterations);
+  auto* ordering = new ceres::ParameterBlockOrdering;
+  options.linear_solver_ordering.reset(ordering);
+  for (double& rho : x.inverse_depths_1pm) {
+    problem.AddParameterBlock(&rho, 1);
+    ordering->AddElementToGroup(&rho, 0);
+  }
+  for (size_t i = 0; i < x.poses.size(); ++i) {
+    problem.AddParameterBlock(x.poses[i].data(), 7, &manifold);
+    problem.AddParameterBlock(x.motions[i].data(), 9);
+    ordering->AddElementToGroup(x.poses[i].data(), 1);
+    ordering->AddElementToGroup(x.motions[i].data(), 1);
+  }
+  std::vector<double*> blocks;
+  for (const WindowFactor& factor : ours.factors) {
+    blocks.clear();
+    for (const Variable v : factor.variables) blocks.push_back(x.data(v));
+    problem.AddResidualBlock(factor.cost.get(), factor.robust ? &cauchy : nullptr, blocks);
+  }
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem, &summary);
+  VioSolution solution{summary.initial_cost, summary.final_cost,
+                       std::max(0, static_cast<int>(summary.iterations.size()) - 1),
+                       summary.IsSolutionUsable()};
+  if (!solution.usable) return solution;
+  for (size_t i = 0; i < x.poses.size(); ++i) read_blocks(x.poses[i], x.motions[i], window.frames[i].state);
+  for (size_t i = 0; i < ours.features.size(); ++i)
+    window.features.at(ours.features[i]).inverse_depth_1pm = x.inverse_depths_1pm[i];
+  return solution;
+}
+
+}  // namespace vsslam

@@ -1,0 +1,64 @@
+// Variables of the window's least-squares problem as Ceres wants them: plain arrays of doubles.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "slam/graph/edge_cost.h"
+#include "slam/vision/vio.h"
+
+namespace vsslam {
+
+/// [velocity; gyro bias; accel bias]
+using MotionBlock = std::array<double, 9>;
+using MotionMap = Eigen::Map<const Eigen::Matrix<double, 9, 1>>;
+
+MotionBlock motion_block(const VioState& state);
+/// Stamps are not among the variables.
+void read_blocks(const PoseBlock& pose, const MotionBlock& motion, VioState& state);
+
+inline SE3 pose_of(const double* block) {
+  SE3 pose;  // the quaternion is a unit quaternion already: from_block and PoseManifold keep it so
+  pose.rotation = Eigen::Map<const Quat>(block);
+  pose.translation = Eigen::Map<const Vec3>(block + 4);
+  return pose;
+}
+
+/// Ceres asks for 7 columns; PoseManifold's PlusJacobian [I; 0] hands the first 6 through.
+template <int kRows, class Derived>
+void put_pose_jacobian(const Eigen::MatrixBase<Derived>& J, double* out) {
+  Eigen::Map<Eigen::Matrix<double, kRows, 7, Eigen::RowMajor>> map(out);
+  map.template leftCols<6>() = J;
+  map.col(6).setZero();
+}
+template <int kRows, class Derived>
+void put_motion_jacobian(const Eigen::MatrixBase<Derived>& J, double* out) {
+  Eigen::Map<Eigen::Matrix<double, kRows, 9, Eigen::RowMajor>>{out} = J;
+}
+
+enum class VariableKind { pose, motion, inverse_depth };
+constexpr int tangent_size(VariableKind kind) {
+  return kind == VariableKind::pose ? 6 : kind == VariableKind::motion ? 9 : 1;
+}
+
+/// A frame by its place in the window, or a feature by its place among those that are optimised.
+struct Variable {
+  VariableKind kind;
+  int index;
+  auto operator<=>(const Variable&) const = default;
+};
+
+struct WindowValues {
+  std::vector<PoseBlock> poses;
+  std::vector<MotionBlock> motions;
+  std::vector<double> inverse_depths_1pm;
+
+  double* data(Variable v);
+  const double* data(Variable v) const { return const_cast<WindowValues*>(this)->data(v); }
+};
+
+/// x - at in the tangent space at `at`: Log(at^-1 x) for a pose.
+Eigen::VectorXd difference(VariableKind kind, const double* x, const double* at);
+
+}  // namespace vsslam
