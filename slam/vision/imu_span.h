@@ -22,9 +22,9 @@ std::optional<ImuSpan> cut_span(const ImuTrack& imu, Time begin, Time end, doubl
 ImuPreintegration preintegrate(const ImuSpan& span, const ImuCalibration& imu, const ImuBias& bias);
 
 /// The state after a motion that was preintegrated with about the same bias.
-VioState advance(const VioState& state, const ImuPreintegration& motion, double gravity_mps2);
+VioState predict(const VioState& state, const ImuPreintegration& motion, double gravity_mps2);
 
 /// The states at the samples of a span, the first included.
-std::vector<VioState> advance_along(const VioState& state, const ImuSpan& span, const ImuCalibration& imu);
+std::vector<VioState> predict_along(const VioState& state, const ImuSpan& span, const ImuCalibration& imu);
 
 }  // namespace vsslam

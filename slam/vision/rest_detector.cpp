@@ -1,6 +1,7 @@
 #include "slam/vision/rest_detector.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -10,6 +11,26 @@ namespace {
 
 constexpr double kLongestMean_s = 10;  // in the meantime a bias walks by about what the mean is good for
 constexpr size_t kMinCommon = 10;
+
+struct ImuMean {
+  Vec3 gyro_sum = Vec3::Zero(), accel_sum = Vec3::Zero();
+  double gyro_square = 0, accel_square = 0;
+  int count = 0;
+
+  void add(const ImuSample& s) {
+    gyro_sum += s.gyro_radps;
+    accel_sum += s.accel_mps2;
+    gyro_square += s.gyro_radps.squaredNorm();
+    accel_square += s.accel_mps2.squaredNorm();
+    ++count;
+  }
+  Vec3 gyro() const { return gyro_sum / count; }
+  Vec3 accel() const { return accel_sum / count; }
+  double gyro_spread() const { return std::sqrt(std::max(0.0, gyro_square / count - gyro().squaredNorm())); }
+  double accel_spread() const {
+    return std::sqrt(std::max(0.0, accel_square / count - accel().squaredNorm()));
+  }
+};
 
 }  // namespace
 
@@ -27,28 +48,27 @@ std::optional<double> median_flow_px(const VisualFrame& a, const VisualFrame& b)
   return *middle;
 }
 
+// Quiet as a whole, and without a trend: the mean of each quarter of the window agrees with that of the rest so far,
+// or with the whole. A robot that sets off or rolls out gently shows there first.
 RestDetector::Quiet RestDetector::quiet(Time now, const ImuTrack& imu) const {
   const Time begin = now - Duration::from_seconds(config_.window_s);
-  Quiet result;
-  Vec3 gyro_square = Vec3::Zero(), accel_square = Vec3::Zero();
-  int count = 0;
-  Time first = now;
-  for (auto s = imu.samples().rbegin(); s != imu.samples().rend() && s->stamp >= begin; ++s, ++count) {
-    result.means.gyro_radps += s->gyro_radps;
-    result.means.accel_mps2 += s->accel_mps2;
-    gyro_square += s->gyro_radps.cwiseAbs2();
-    accel_square += s->accel_mps2.cwiseAbs2();
-    first = s->stamp;
+  ImuMean whole;
+  std::array<ImuMean, 4> quarters;
+  for (auto s = imu.samples().rbegin(); s != imu.samples().rend() && s->stamp > begin; ++s) {
+    const double share = seconds_between(s->stamp, now) / config_.window_s;
+    whole.add(*s);
+    quarters[static_cast<size_t>(std::clamp(4 * share, 0.0, 3.0))].add(*s);
   }
-  result.means.duration_s = seconds_between(first, now);
-  if (count < 5 || result.means.duration_s < 0.8 * config_.window_s) return result;
-  result.means.gyro_radps /= count;
-  result.means.accel_mps2 /= count;
-  const double gyro_variance = gyro_square.sum() / count - result.means.gyro_radps.squaredNorm();
-  const double accel_variance = accel_square.sum() / count - result.means.accel_mps2.squaredNorm();
-  result.is = gyro_variance < config_.gyro_radps * config_.gyro_radps &&
-              accel_variance < config_.accel_mps2 * config_.accel_mps2 &&
+  Quiet result;
+  if (whole.count < 8) return result;
+  result.means = {whole.gyro(), whole.accel(), config_.window_s};
+  const RestMeans& usual = reference_ ? means_ : result.means;
+  result.is = whole.gyro_spread() < config_.gyro_radps && whole.accel_spread() < config_.accel_mps2 &&
               result.means.gyro_radps.norm() < config_.gyro_radps;
+  for (const ImuMean& quarter : quarters)
+    result.is = result.is && quarter.count > 0 &&
+                (quarter.gyro() - usual.gyro_radps).norm() < config_.gyro_change_radps &&
+                (quarter.accel() - usual.accel_mps2).norm() < config_.accel_change_mps2;
   return result;
 }
 

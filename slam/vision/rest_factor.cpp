@@ -10,7 +10,7 @@ namespace vsslam {
 namespace {
 
 // How still a robot at rest stands: what its suspension and people walking by leave. Judgement.
-constexpr double kRotationSigma_rad = 2e-4, kPositionSigma_m = 5e-4, kVelocitySigma_mps = 2e-3;
+constexpr double kRotationSigma_rad = 2e-4, kPositionSigma_m = 5e-4, kVelocitySigma_mps = 4e-3;
 
 }  // namespace
 

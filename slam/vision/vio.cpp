@@ -117,7 +117,7 @@ bool VisualInertialOdometry::Impl::track(const VisualFrame& frame, const std::op
     next.state.v_vio_mps.setZero();
   } else {
     next.motion = preintegrate(next.span, model.imu, before.bias);
-    next.state = advance(before, *next.motion, model.imu.gravity_mps2);
+    next.state = predict(before, *next.motion, model.imu.gravity_mps2);
   }
   next.state.stamp = frame.stamp;
   const VioState expected = next.state;
@@ -210,7 +210,7 @@ std::optional<VioState> VisualInertialOdometry::Impl::propagated(Time stamp) con
   const VioState& newest = window.newest().state;
   const auto span = cut_span(imu, newest.stamp, stamp, kMaxImuGap_s);
   if (!span) return std::nullopt;
-  VioState state = advance_along(newest, *span, model.imu).back();
+  VioState state = predict_along(newest, *span, model.imu).back();
   state.stamp = stamp;
   return state;
 }
@@ -226,7 +226,7 @@ std::vector<StampedPose> VisualInertialOdometry::Impl::dense_path(Time begin, Ti
     path.push_back({from.stamp, from.T_vio_imu});
     if (last || from.stamp >= end || window.frames[k + 1].rest) continue;
     const WindowFrame& next = window.frames[k + 1];
-    const auto states = advance_along(from, next.span, model.imu);
+    const auto states = predict_along(from, next.span, model.imu);
     const Vec6 bend = (states.back().T_vio_imu.inverse() * next.state.T_vio_imu).log();
     for (size_t i = 1; i + 1 < states.size(); ++i) {
       const double u =
@@ -238,7 +238,7 @@ std::vector<StampedPose> VisualInertialOdometry::Impl::dense_path(Time begin, Ti
   if (end <= path.back().stamp) return path;
   const auto span = cut_span(imu, window.newest().state.stamp, end, kMaxImuGap_s);
   if (!span) return {};
-  const auto states = advance_along(window.newest().state, *span, model.imu);
+  const auto states = predict_along(window.newest().state, *span, model.imu);
   for (size_t i = 1; i < states.size(); ++i) path.push_back({states[i].stamp, states[i].T_vio_imu});
   return path;
 }

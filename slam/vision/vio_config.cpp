@@ -6,6 +6,8 @@ void VioRestConfig::fields(Fields& f) {
   f("window_s", window_s, between(0.1, 2));
   f("gyro_radps", gyro_radps, positive());
   f("accel_mps2", accel_mps2, positive());
+  f("gyro_change_radps", gyro_change_radps, positive());
+  f("accel_change_mps2", accel_change_mps2, positive());
   f("flow_px", flow_px, positive());
 }
 

@@ -20,7 +20,7 @@ std::optional<VioWindow> start_aided(const VioAid& aid, const VisualFrame& frame
   if (aid.stamp < frame.stamp) {
     const auto span = cut_span(imu, aid.stamp, frame.stamp, kMaxImuGap_s);
     if (!span) return std::nullopt;
-    first.state = advance(first.state, preintegrate(*span, model.imu, aid.bias), model.imu.gravity_mps2);
+    first.state = predict(first.state, preintegrate(*span, model.imu, aid.bias), model.imu.gravity_mps2);
   }
   first.state.stamp = frame.stamp;
   first.key = true;
