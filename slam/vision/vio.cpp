@@ -124,7 +124,6 @@ bool VisualInertialOdometry::Impl::track(const VisualFrame& frame, const std::op
   window.append(std::move(next), frame);
   const NewestView view = view_newest(window, model.T_imu_camera);
   decide_key(view);
-  if (view.tracks >= model.config.limits.min_tracks || means) last_seen = frame.stamp;
   // 4 depths of new features, then all states and depths together
   triangulate(window, model.T_imu_camera, model.config);
   preintegrate_again();
@@ -133,7 +132,9 @@ bool VisualInertialOdometry::Impl::track(const VisualFrame& frame, const std::op
     if (!solve(window, model, model.config.max_iterations).usable) return false;
   }
   // 5 what does not fit leaves
-  remove_outliers(window, model.T_imu_camera, model.config.outlier_px);
+  const int removed = remove_outliers(window, model.T_imu_camera, model.config.outlier_px);
+  const int fitting = view.tracks - removed;
+  if (means || (fitting >= model.config.limits.min_tracks && fitting > removed)) last_seen = frame.stamp;
   return healthy(expected);
 }
 

@@ -21,7 +21,7 @@ struct VioRestConfig {
   double gyro_radps = 0.02;          ///< spread of the gyroscope, and bound of its mean ...
   double accel_mps2 = 0.15;          ///< ... and spread of the accelerometer
   double gyro_change_radps = 0.005;  ///< of the mean over a quarter of the window
-  double accel_change_mps2 = 0.03;   ///< likewise
+  double accel_change_mps2 = 0.02;   ///< likewise
   double flow_px = 1.5;              ///< median displacement of features, at focal length 460
   void fields(Fields& f);
 };

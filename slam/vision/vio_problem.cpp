@@ -29,8 +29,7 @@ Linearization linearization_of(const VioWindow& window, const std::vector<int64_
   Linearization at;
   for (const WindowFrame& frame : window.frames) {
     at.frames.push_back(frame.id);
-    at.now.poses.push_back(to_block(frame.state.T_vio_imu));
-    at.now.motions.push_back(motion_block(frame.state));
+    at.now.frames.push_back(frame_blocks(frame.state));
   }
   for (const int64_t id : features)
     at.now.inverse_depths_1pm.push_back(*window.features.at(id).inverse_depth_1pm);

@@ -7,9 +7,10 @@ namespace vsslam {
 
 namespace {
 
-ceres::Solver::Options solver_options(int max_iterations) {
+ceres::Solver::Options solver_options(int max_iterations, bool has_features) {
   ceres::Solver::Options options;
-  options.linear_solver_type = ceres::DENSE_SCHUR;
+  // Without features Ceres would choose what to eliminate, by addresses.
+  options.linear_solver_type = has_features ? ceres::DENSE_SCHUR : ceres::DENSE_NORMAL_CHOLESKY;
   options.trust_region_strategy_type = ceres::DOGLEG;
   options.dense_linear_algebra_library_type = ceres::EIGEN;  // the others round as the host's LAPACK does
   options.num_threads = 1;                                   // sums of several threads are not repeatable
@@ -36,18 +37,18 @@ VioSolution solve(VioWindow& window, const VioModel& model, int max_iterations) 
   PoseManifold manifold;
   ceres::CauchyLoss cauchy(1.0);
   ceres::Problem problem(problem_options());
-  ceres::Solver::Options options = solver_options(max_iterations);
+  ceres::Solver::Options options = solver_options(max_iterations, !ours.features.empty());
   auto* ordering = new ceres::ParameterBlockOrdering;
   options.linear_solver_ordering.reset(ordering);
   for (double& rho : x.inverse_depths_1pm) {
     problem.AddParameterBlock(&rho, 1);
     ordering->AddElementToGroup(&rho, 0);
   }
-  for (size_t i = 0; i < x.poses.size(); ++i) {
-    problem.AddParameterBlock(x.poses[i].data(), 7, &manifold);
-    problem.AddParameterBlock(x.motions[i].data(), 9);
-    ordering->AddElementToGroup(x.poses[i].data(), 1);
-    ordering->AddElementToGroup(x.motions[i].data(), 1);
+  for (FrameBlocks& frame : x.frames) {
+    problem.AddParameterBlock(frame.pose.data(), 7, &manifold);
+    problem.AddParameterBlock(frame.motion.data(), 9);
+    ordering->AddElementToGroup(frame.pose.data(), 1);
+    ordering->AddElementToGroup(frame.motion.data(), 1);
   }
   std::vector<double*> blocks;
   for (const WindowFactor& factor : ours.factors) {
@@ -61,7 +62,7 @@ VioSolution solve(VioWindow& window, const VioModel& model, int max_iterations) 
                        std::max(0, static_cast<int>(summary.iterations.size()) - 1),
                        summary.IsSolutionUsable()};
   if (!solution.usable) return solution;
-  for (size_t i = 0; i < x.poses.size(); ++i) read_blocks(x.poses[i], x.motions[i], window.frames[i].state);
+  for (size_t i = 0; i < x.frames.size(); ++i) read_blocks(x.frames[i], window.frames[i].state);
   for (size_t i = 0; i < ours.features.size(); ++i)
     window.features.at(ours.features[i]).inverse_depth_1pm = x.inverse_depths_1pm[i];
   return solution;

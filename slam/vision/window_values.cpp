@@ -9,9 +9,13 @@ MotionBlock motion_block(const VioState& state) {
   return block;
 }
 
-void read_blocks(const PoseBlock& pose, const MotionBlock& motion, VioState& state) {
-  const MotionMap m(motion.data());
-  state.T_vio_imu = from_block(pose);
+FrameBlocks frame_blocks(const VioState& state) {
+  return {to_block(state.T_vio_imu), motion_block(state)};
+}
+
+void read_blocks(const FrameBlocks& blocks, VioState& state) {
+  const MotionMap m(blocks.motion.data());
+  state.T_vio_imu = from_block(blocks.pose);
   state.v_vio_mps = m.head<3>();
   state.bias.gyro_radps = m.segment<3>(3);
   state.bias.accel_mps2 = m.tail<3>();
@@ -19,8 +23,8 @@ void read_blocks(const PoseBlock& pose, const MotionBlock& motion, VioState& sta
 
 double* WindowValues::data(Variable v) {
   const auto i = static_cast<size_t>(v.index);
-  if (v.kind == VariableKind::pose) return poses[i].data();
-  if (v.kind == VariableKind::motion) return motions[i].data();
+  if (v.kind == VariableKind::pose) return frames[i].pose.data();
+  if (v.kind == VariableKind::motion) return frames[i].motion.data();
   return &inverse_depths_1pm[i];
 }
 

@@ -15,8 +15,6 @@ using MotionBlock = std::array<double, 9>;
 using MotionMap = Eigen::Map<const Eigen::Matrix<double, 9, 1>>;
 
 MotionBlock motion_block(const VioState& state);
-/// Stamps are not among the variables.
-void read_blocks(const PoseBlock& pose, const MotionBlock& motion, VioState& state);
 
 inline SE3 pose_of(const double* block) {
   SE3 pose;  // the quaternion is a unit quaternion already: from_block and PoseManifold keep it so
@@ -49,9 +47,18 @@ struct Variable {
   auto operator<=>(const Variable&) const = default;
 };
 
+struct FrameBlocks {
+  PoseBlock pose;
+  MotionBlock motion;
+};
+
+FrameBlocks frame_blocks(const VioState& state);
+/// Stamps are not among the variables.
+void read_blocks(const FrameBlocks& blocks, VioState& state);
+
+/// Ceres sorts blocks by their addresses, so each kind is one array: the order is that of the window.
 struct WindowValues {
-  std::vector<PoseBlock> poses;
-  std::vector<MotionBlock> motions;
+  std::vector<FrameBlocks> frames;
   std::vector<double> inverse_depths_1pm;
 
   double* data(Variable v);

@@ -201,7 +201,7 @@ class Eyes {
   int64_t next_id_ = 0;
 };
 
-struct Run {
+struct Ride {
   struct Step {
     Time stamp;
     std::optional<VioState> state;
@@ -237,7 +237,7 @@ struct Run {
   }
 };
 
-struct RunOptions {
+struct RideOptions {
   Noise noise;
   double depth_share = 0;
   VioConfig config;
@@ -260,11 +260,11 @@ inline VioState true_state(const Drive& drive, const RigCalibration& rig, Time n
           {noise.gyro_bias_radps, noise.accel_bias_mps2}};
 }
 
-inline Run run(const Drive& drive, const RunOptions& options) {
+inline Ride ride(const Drive& drive, const RideOptions& options) {
   const RigCalibration calibration = rig();
   VisualInertialOdometry vio(options.config, calibration);
   Eyes eyes(drive, calibration, options.noise, options.depth_share);
-  Run result;
+  Ride result;
   const int64_t imu_step = 1'000'000'000 / options.imu_rate_hz;
   int64_t next_imu = Time::from_seconds(options.begin_s).ns;
   const auto first_frame = static_cast<int64_t>(options.begin_s * options.frame_rate_hz) + 1;
