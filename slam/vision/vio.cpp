@@ -280,6 +280,9 @@ int VisualInertialOdometry::restarts() const {
 const VioState& VisualInertialOdometry::state() const {
   return impl_->window.newest().state;
 }
+Eigen::Matrix<double, 15, 15> VisualInertialOdometry::covariance() const {
+  return newest_covariance(impl_->window, impl_->model);
+}
 
 std::vector<StampedPose> VisualInertialOdometry::path_vio_imu(Time begin, Time end) const {
   if (!impl_->tracking || end < begin) return {};

@@ -107,6 +107,8 @@ class VisualInertialOdometry {
   int restarts() const;  ///< failures after a successful start
   /// State at the last frame of the window; only while tracking.
   const VioState& state() const;
+  /// Of state(), tangent order [pose; velocity; gyro bias; accel bias]. Costs about as much as a frame.
+  Eigen::Matrix<double, 15, 15> covariance() const;
   /// Poses from one instant to a later one: window states, preintegrated IMU between and beyond them. Empty
   /// if not tracking over the whole time. Relative motion is what counts; all in one frame `vio`.
   std::vector<StampedPose> path_vio_imu(Time begin, Time end) const;
