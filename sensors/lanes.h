@@ -43,6 +43,9 @@ inline Floats max(Floats a, Floats b) {
 inline Floats sqrt(Floats x) {
   return (Floats)_mm256_sqrt_ps((__m256)x);
 }
+inline bool none(Ints mask) {
+  return _mm256_testz_si256((__m256i)mask, (__m256i)mask);
+}
 /// Within 0.01, continuous; for positive normal numbers.
 inline Floats rough_log2(Floats x) {
   const Ints bits = (Ints)x;

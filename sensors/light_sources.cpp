@@ -12,7 +12,8 @@ namespace vsslam {
 namespace {
 
 constexpr float kLargestSource_m2 = 1;  // larger luminous surfaces are found by rays
-constexpr size_t kMostSources = 512;    // and so are many small ones
+constexpr float kGroundAgainstSky = 0.15f;
+constexpr size_t kMostSources = 512;  // and so are many small ones
 
 LightSource source_of(const Light& light, double level, int group) {
   LightSource s;
@@ -68,8 +69,13 @@ float LightSource::illuminance(const Vec3f& position, const Vec3f& normal) const
   const float cos_light = -to_light.dot(direction_world) / distance;
   if (kind == Kind::point) return intensity * cos_surface / distance2;
   if (cos_light <= 0) return 0;
-  // A disc's illuminance on its axis has radius^2 + distance^2 below it.
-  if (kind == Kind::surface) return intensity * cos_light * cos_surface / (distance2 + radius_m * radius_m);
+  if (kind == Kind::surface) {
+    const float height =
+        std::clamp(0.5f - 2 * to_light.z() / distance, 0.0f, 1.0f);  // 1: well above the source
+    const float share = 1 + height * (upwards - 1);
+    // A disc's illuminance on its axis has radius^2 + distance^2 below it.
+    return intensity * share * cos_light * cos_surface / (distance2 + radius_m * radius_m);
+  }
   // KHR_lights_punctual, reference code of the spot's edge.
   const float edge = std::clamp((cos_light - cos_outer) / std::max(1e-3f, cos_inner - cos_outer), 0.0f, 1.0f);
   return intensity * edge * edge * cos_surface / distance2;
@@ -112,6 +118,8 @@ LightSources::LightSources(const World& world, const PlacedTriangles& triangles,
       continue;
     glow.gathered = false;
     sources.push_back(source_of(triangles.all[glow.triangle], glow));
+    const bool window = world.materials[static_cast<size_t>(triangles.all[glow.triangle].material)].glass;
+    if (window) sources.back().upwards = kGroundAgainstSky;
   }
   if (sky_luminance > 0) daylight_group = group("daylight");
   if (lit.headlight.intensity_cd > 0) headlight_group = group("headlight");

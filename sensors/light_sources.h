@@ -23,6 +23,7 @@ struct LightSource {
   float intensity = 0;  ///< grey cd; lux if directional
   float radius_m = 0, range_m = 0;
   float cos_inner = 1, cos_outer = 0;
+  float upwards = 1;  ///< what goes up against what goes down: through a window the ground is seen from above
 
   /// Illuminance (lux) of a surface at `position` that faces `normal`, as if nothing stood between.
   float illuminance(const Vec3f& position_world, const Vec3f& normal_world) const;

@@ -129,24 +129,53 @@ GreyTextures::GreyTextures(const World& world) {
   for (const size_t look : look_of_material) pyramids_.push_back(of_look[look]);
 }
 
-Floats GreyTextures::bilinear(Ints level, Floats u, Floats v) const {
+struct GreyTextures::LevelLanes {
+  Ints offset, stride;
+  Floats width_px, height_px;
+};
+
+GreyTextures::LevelLanes GreyTextures::at(Ints level) const {
   static_assert(sizeof(Level) == 16);
+  if (none(level != level[0])) {  // as mostly
+    const Level& one = levels_[static_cast<size_t>(level[0])];
+    return {Ints{} + one.offset, Ints{} + one.stride, all(one.width_px), all(one.height_px)};
+  }
   const auto* table = reinterpret_cast<const float*>(levels_.data());
   const Ints entry = 4 * level;
-  const Ints offset = (Ints)gather(table, entry), stride = (Ints)gather(table, entry + 1);
+  return {(Ints)gather(table, entry), (Ints)gather(table, entry + 1), gather(table, entry + 2),
+          gather(table, entry + 3)};
+}
+
+inline Floats GreyTextures::bilinear(const LevelLanes& level, Floats u, Floats v) const {
   // Texel centres lie at half numbers; the border moves them by one.
-  const Floats x = u * gather(table, entry + 2) + 0.5f, y = v * gather(table, entry + 3) + 0.5f;
+  const Floats x = (u - floor(u)) * level.width_px + 0.5f, y = (v - floor(v)) * level.height_px + 0.5f;
   const Ints ix = truncated(x), iy = truncated(y);
   const Floats fx = x - floats(ix), fy = y - floats(iy);
-  const Ints index = offset + iy * stride + ix;
+  const Ints index = level.offset + iy * level.stride + ix;
   const Words upper = gather_pairs(texels_.data(), index),
-              lower = gather_pairs(texels_.data(), index + stride);
+              lower = gather_pairs(texels_.data(), index + level.stride);
   const auto mix = [&fx](Words pair) {
     const Floats left = floats((Ints)(pair & 0xFFFFu)), right = floats((Ints)(pair >> 16));
     return left + fx * (right - left);
   };
   const Floats top = mix(upper);
   return top + fy * (mix(lower) - top);
+}
+
+Floats GreyTextures::along(const LevelLanes& level, Floats u, Floats v, Floats length_u, Floats length_v,
+                           Floats probes) const {
+  const Floats share = 1.0f / probes;
+  const Floats step_u = length_u * share, step_v = length_v * share;
+  Floats at_u = u + 0.5f * (step_u - length_u), at_v = v + 0.5f * (step_v - length_v);
+  Floats sum = bilinear(level, at_u, at_v);
+  for (int k = 1; k < kMaxProbes; ++k) {
+    const Ints on = probes > static_cast<float>(k);
+    if (none(on)) break;
+    at_u += step_u;
+    at_v += step_v;
+    sum += on ? bilinear(level, at_u, at_v) : all(0);
+  }
+  return sum * share;
 }
 
 Floats GreyTextures::sample(Ints first_level, Ints levels, Floats width_px, Floats height_px, Floats u,
@@ -160,28 +189,18 @@ Floats GreyTextures::sample(Ints first_level, Ints levels, Floats width_px, Floa
   const Floats ratio = major2 / max(max(area, -area), all(1e-12f));
   const Floats wanted = min(max(floor(0.7f * ratio + 0.5f), all(1)), all(kMaxProbes));
   const Floats probes = major2 > 1.0f ? wanted : all(1);
-  const Floats step_u = (across_longer ? f.across_x : f.down_x) / (width_px * probes),
-               step_v = (across_longer ? f.across_y : f.down_y) / (height_px * probes);
+  const Floats length_u = (across_longer ? f.across_x : f.down_x) / width_px,
+               length_v = (across_longer ? f.across_y : f.down_y) / height_px;
   const Floats top = floats(levels - 1);
   const Floats lod = min(max(0.5f * rough_log2(major2 / (probes * probes)), all(0)), top);
   const Ints fine = truncated(lod);
-  const Ints level = first_level + fine;
-  const Ints next = first_level + truncated(min(floats(fine) + 1.0f, top));
   const Floats blend = lod - floats(fine);
-
-  Floats sum = all(0), weight = all(1);
-  Floats at_u = u - 0.5f * (probes - 1.0f) * step_u, at_v = v - 0.5f * (probes - 1.0f) * step_v;
-  for (int k = 0; k < kMaxProbes; ++k) {
-    const Ints on = probes > static_cast<float>(k);
-    if (_mm256_testz_si256((__m256i)on, (__m256i)on)) break;
-    const Floats wrapped_u = at_u - floor(at_u), wrapped_v = at_v - floor(at_v);
-    const Floats near = bilinear(level, wrapped_u, wrapped_v), far = bilinear(next, wrapped_u, wrapped_v);
-    sum += on ? near + blend * (far - near) : all(0);
-    at_u += step_u;
-    at_v += step_v;
-  }
-  weight /= probes * 65535.0f;
-  return sum * weight;
+  const Floats near = along(at(first_level + fine), u, v, length_u, length_v, probes);
+  if (none(blend > 0)) return near * (1 / 65535.0f);
+  // Texels of the next level are twice as large: half the probes do.
+  const Ints next = first_level + truncated(min(floats(fine) + 1.0f, top));
+  const Floats far = along(at(next), u, v, length_u, length_v, floor(0.5f * (probes + 1.0f)));
+  return (near + blend * (far - near)) * (1 / 65535.0f);
 }
 
 float GreyTextures::sample(const Pyramid& pyramid, const Vec2f& uv, float footprint_px) const {

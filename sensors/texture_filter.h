@@ -51,7 +51,13 @@ class GreyTextures {
     int32_t stride;
     float width_px, height_px;
   };
-  lanes::Floats bilinear(lanes::Ints level, lanes::Floats u, lanes::Floats v) const;
+  /// Levels of eight rays.
+  struct LevelLanes;
+  LevelLanes at(lanes::Ints level) const;
+  lanes::Floats bilinear(const LevelLanes& level, lanes::Floats u, lanes::Floats v) const;
+  /// Mean of so many probes, evenly along a line of the given length and middle.
+  lanes::Floats along(const LevelLanes& level, lanes::Floats u, lanes::Floats v, lanes::Floats length_u,
+                      lanes::Floats length_v, lanes::Floats probes) const;
 
   std::vector<Pyramid> pyramids_;  ///< by material
   std::vector<Level> levels_;

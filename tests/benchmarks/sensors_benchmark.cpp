@@ -1,5 +1,5 @@
-// How fast the LiDAR is, on one core: whole scans per second, and tracing against a bare Embree packet loop
-// over the same rays. Times are CPU times of the thread.
+// How fast LiDAR and camera are, on one core: whole scans and pictures per second, and tracing against a bare
+// Embree packet loop over the same rays. Times are CPU times of the thread.
 //
 //   out/build/release/tests/benchmarks/bench_sensors
 #include <benchmark/benchmark.h>
@@ -15,7 +15,9 @@
 #include "core/rng.h"
 #include "sensors/imu.h"
 #include "sensors/lidar.h"
+#include "sensors/renderer.h"
 #include "tests/sensors/shapes.h"
+#include "worlds/corridor.h"
 
 namespace vsslam {
 namespace {
@@ -161,19 +163,9 @@ class BareEmbree {
   explicit BareEmbree(const World& world)
       : device_(rtcNewDevice("isa=avx2,threads=1")), scene_(rtcNewScene(device_)) {
     rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
-    for (const Object& object : world.objects) {
-      const Primitive& p = world.meshes[static_cast<size_t>(object.mesh)].primitives[0];
-      RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-      void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12,
-                                               p.positions.size());
-      void* indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12,
-                                              p.triangles.size());
-      std::memcpy(vertices, p.positions.data(), 12 * p.positions.size());
-      std::memcpy(indices, p.triangles.data(), 12 * p.triangles.size());
-      rtcCommitGeometry(geometry);
-      rtcAttachGeometry(scene_, geometry);
-      rtcReleaseGeometry(geometry);
-    }
+    for (const Object& object : world.objects)
+      for (const Primitive& p : world.meshes[static_cast<size_t>(object.mesh)].primitives)
+        attach(p, object.T_world_object);
     rtcCommitScene(scene_);
   }
   ~BareEmbree() {
@@ -209,9 +201,38 @@ class BareEmbree {
   }
 
  private:
+  void attach(const Primitive& p, const Eigen::Affine3d& T_world_object) {
+    RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+    auto* vertex = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
+                                                               RTC_FORMAT_FLOAT3, 12, p.positions.size()));
+    for (const Vec3f& position : p.positions) {
+      const Vec3f placed = (T_world_object * position.cast<double>()).cast<float>();
+      std::memcpy(vertex, placed.data(), 12);
+      vertex += 3;
+    }
+    void* indices =
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, p.triangles.size());
+    std::memcpy(indices, p.triangles.data(), 12 * p.triangles.size());
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(scene_, geometry);
+    rtcReleaseGeometry(geometry);
+  }
+
   RTCDevice device_;
   RTCScene scene_;
 };
+
+double median(std::vector<double>& v) {
+  std::nth_element(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2), v.end());
+  return v[v.size() / 2];
+}
+
+void compare(benchmark::State& state, std::vector<double>& bare_s, std::vector<double>& ours_s) {
+  const double bare = median(bare_s), ours = median(ours_s);
+  state.counters["bare_ms"] = 1e3 * bare;
+  state.counters["ours_ms"] = 1e3 * ours;
+  state.counters["ratio"] = ours / bare;
+}
 
 void tracing(benchmark::State& state, int which) {
   set_thread_count(1);
@@ -234,14 +255,83 @@ void tracing(benchmark::State& state, int which) {
     bare_s.push_back(t1 - t0);
     ours_s.push_back(t2 - t1);
   }
-  const auto median = [](std::vector<double>& v) {
-    std::nth_element(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2), v.end());
-    return v[v.size() / 2];
-  };
-  const double bare_median = median(bare_s), ours_median = median(ours_s);
-  state.counters["bare_ms"] = 1e3 * bare_median;
-  state.counters["ours_ms"] = 1e3 * ours_median;
-  state.counters["ratio"] = ours_median / bare_median;
+  compare(state, bare_s, ours_s);
+}
+
+/// A camera of 640 x 480 pixels in the default corridor, with its textures and lamps.
+struct CameraScene {
+  static constexpr int kWidth_px = 640, kHeight_px = 480;
+  static constexpr double kFocal_px = 384.2;
+  World world = make_corridor({});
+  Raycaster raycaster{world};
+  ViewRays rays;
+  CameraScene() {
+    rays.width_px = kWidth_px, rays.height_px = kHeight_px;
+    rays.pixel_angle_rad = static_cast<float>(1 / kFocal_px);
+    for (int y = 0; y < kHeight_px; ++y)
+      for (int x = 0; x < kWidth_px; ++x)
+        rays.direction_camera.push_back(
+            Vec3((x - 319.5) / kFocal_px, (y - 236.4) / kFocal_px, 1).normalized().cast<float>());
+  }
+  /// Along the southern side, a little askew.
+  static SE3 T_world_camera(int frame) {
+    const double half_turn = 1.5707963267948966;
+    return SE3::from_rpy({-half_turn, 0, -half_turn + 0.1 * std::sin(0.3 * frame)},
+                         {-25 + 0.1 * (frame % 500), -9, 0.65});
+  }
+  std::vector<RayPacket> packets(const SE3& pose) const {
+    std::vector<RayPacket> all;
+    const Eigen::Matrix3f R = pose.matrix3().cast<float>();
+    for (int y = 0; y < kHeight_px; y += 4)
+      for (int x = 0; x < kWidth_px; x += 4) {
+        RayPacket& p = all.emplace_back();
+        for (int i = 0; i < RayPacket::kRays; ++i) {
+          const Vec3f d = R * rays.direction_camera[static_cast<size_t>((y + i / 4) * kWidth_px + x + i % 4)];
+          p.origin_x[i] = static_cast<float>(pose.translation.x());
+          p.origin_y[i] = static_cast<float>(pose.translation.y());
+          p.origin_z[i] = static_cast<float>(pose.translation.z());
+          p.direction_x[i] = d.x(), p.direction_y[i] = d.y(), p.direction_z[i] = d.z();
+          p.near_m[i] = 0.02f, p.far_m[i] = 1e5f;
+        }
+      }
+    return all;
+  }
+};
+
+void camera_tracing(benchmark::State& state) {
+  set_thread_count(1);
+  const CameraScene s;
+  const BareEmbree bare(s.world);
+  std::vector<double> bare_s, ours_s;
+  int frame = 0;
+  for (auto _ : state) {
+    const std::vector<RayPacket> rays = s.packets(CameraScene::T_world_camera(frame++));
+    std::vector<RTCRayHit16> packets = BareEmbree::prepare(rays);
+    std::vector<SurfacePacket> hits(rays.size());
+    const double t0 = cpu_s();
+    bare.trace(packets);
+    const double t1 = cpu_s();
+    s.raycaster.trace(rays, hits);
+    const double t2 = cpu_s();
+    benchmark::DoNotOptimize(hits.data());
+    bare_s.push_back(t1 - t0);
+    ours_s.push_back(t2 - t1);
+  }
+  compare(state, bare_s, ours_s);
+}
+
+/// Radiance pictures, without the errors of a camera.
+void camera_views(benchmark::State& state) {
+  set_thread_count(1);
+  const CameraScene s;
+  const double t0 = cpu_s();
+  const Renderer renderer(s.world, s.raycaster, {});
+  state.counters["bake_s"] = cpu_s() - t0;
+  View view;
+  int frame = 0;
+  for (auto _ : state) renderer.render(CameraScene::T_world_camera(frame++), s.rays, view);
+  state.counters["views/s"] = benchmark::Counter(frame, benchmark::Counter::kIsRate);
+  state.counters["triangles"] = static_cast<double>(s.world.triangle_count());
 }
 
 void imu_samples(benchmark::State& state) {
@@ -266,6 +356,8 @@ BENCHMARK_CAPTURE(scans, corridor_seven_sub_rays, 0, footprint())->Unit(benchmar
 BENCHMARK_CAPTURE(scans, street, 1, LidarConfig{})->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(tracing, corridor, 0)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(tracing, street, 1)->Unit(benchmark::kMillisecond);
+BENCHMARK(camera_tracing)->Unit(benchmark::kMillisecond);
+BENCHMARK(camera_views)->Unit(benchmark::kMillisecond);
 BENCHMARK(imu_samples);
 
 }  // namespace
