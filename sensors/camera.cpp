@@ -144,8 +144,8 @@ int Camera::blur_views(const Shot& shot, Workshop& workshop) const {
   if (!config_.motion_blur) return 1;
   const SE3 T_world_begin = shot.T_world_camera(0.0), T_world_end = shot.T_world_camera(1.0);
   shot.source(T_world_begin, coarse_rays_, workshop.coarse);
-  const double flow_px =
-      largest(flow(optics_, coarse_rays_, workshop.coarse.depth_m, T_world_end.inverse() * T_world_begin));
+  const double flow_px = length_of_most(
+      flow(optics_, coarse_rays_, workshop.coarse.depth_m, T_world_end.inverse() * T_world_begin));
   return static_cast<int>(std::clamp(std::ceil(flow_px / config_.blur_spacing_px), 1.0,
                                      static_cast<double>(config_.max_blur_views)));
 }

@@ -2,7 +2,7 @@
 //
 // Frame `camera`: x right, y down, z forward. Global shutter. Stamps are the middle of the exposure, at the rate of the
 // camera's clock whatever the exposure time. Motion blur is the mean of views at instants spread evenly over the
-// exposure, as many as keep the largest flow between neighbours below `blur_spacing_px`.
+// exposure, as many as keep the flow between neighbours below `blur_spacing_px`.
 #pragma once
 
 #include <functional>

@@ -37,15 +37,15 @@ struct CameraConfig {
   double fx_px = 384.2, fy_px = 384.2, cx_px = 319.5, cy_px = 236.4;
   double k1 = 0, k2 = 0, p1 = 0, p2 = 0;  ///< radial-tangential distortion, OpenCV's order
 
-  double exposure_s = 0.003, gain = 4;  ///< fixed, or where auto exposure begins
+  double exposure_s = 0.003, gain = 12;  ///< fixed, or where auto exposure begins
   AutoExposureConfig auto_exposure;
   bool motion_blur = true;
-  double blur_spacing_px = 1;  ///< largest flow between the instants that are averaged
+  double blur_spacing_px = 1;  ///< largest flow between the instants that are averaged, in 95 % of the image
   int max_blur_views = 8;
   int samples_per_pixel = 1;  ///< rays that share a pixel's area: smoother edges at a price in time
 
-  double sensitivity_e_per_cdm2_ms = 4;  ///< electrons of a pixel on the axis that sees 1 cd/m^2 for 1 ms
-  double full_well_e = 8000;             ///< electrons that a pixel holds, and of grey 255 at gain 1
+  double sensitivity_e_per_cdm2_ms = 9;  ///< electrons of a pixel on the axis that sees 1 cd/m^2 for 1 ms
+  double full_well_e = 6500;             ///< electrons that a pixel holds, and of grey 255 at gain 1
   double vignetting_exponent = 4;        ///< cos^n of the angle to the axis
   bool shot_noise = true;                ///< variance = signal, in electrons
   double read_noise_e = 5;               ///< white, per pixel and image

@@ -22,10 +22,12 @@ std::vector<Vec2f> flow(const CameraOptics& optics, const ViewRays& rays, const 
   return flow_px;
 }
 
-double largest(const std::vector<Vec2f>& flow_px) {
-  float most = 0;
-  for (const Vec2f& f : flow_px) most = std::max(most, f.norm());
-  return most;
+double length_of_most(const std::vector<Vec2f>& flow_px) {
+  std::vector<float> lengths;
+  for (const Vec2f& f : flow_px) lengths.push_back(f.norm());
+  const auto at = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() * 95 / 100);
+  std::nth_element(lengths.begin(), at, lengths.end());
+  return static_cast<double>(*at);
 }
 
 }  // namespace vsslam

@@ -13,7 +13,7 @@ namespace vsslam {
 std::vector<Vec2f> flow(const CameraOptics& optics, const ViewRays& rays, const std::vector<float>& depth_m,
                         const SE3& T_b_a);
 
-/// Length of the longest of these vectors, px; points behind count as infinite.
-double largest(const std::vector<Vec2f>& flow_px);
+/// Length that 95 % of these vectors do not exceed, px; points behind count as infinite.
+double length_of_most(const std::vector<Vec2f>& flow_px);
 
 }  // namespace vsslam

@@ -44,6 +44,7 @@ TEST(ExposureControl, ActsAfterItsDelay) {
   CameraConfig config;
   config.auto_exposure.delay_frames = 4;
   config.auto_exposure.share_per_frame = 1;
+  config.gain = 4;
   ExposureControl control(config);
   EXPECT_EQ(control.known(), 4);
   const double first = control.ahead(0).product_s();

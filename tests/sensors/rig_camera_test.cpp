@@ -31,6 +31,7 @@ RigConfig rig_config() {
   RigConfig config;
   CameraConfig& camera = config.sensors.camera;
   camera.enabled = true;
+  camera.gain = 1.4;
   camera.width_px = 64, camera.height_px = 48;
   camera.fx_px = camera.fy_px = 40, camera.cx_px = 31.5, camera.cy_px = 23.5;
   return config;
