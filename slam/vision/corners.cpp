@@ -135,7 +135,7 @@ struct Cells {
   }
 };
 
-float smallest_response(const GreyView& image, const std::vector<Candidate>& candidates,
+float smallest_response(const GreyView& image, double noise_grey, const std::vector<Candidate>& candidates,
                         const std::vector<Eigen::Vector2f>& taken, const CornerConfig& config) {
   float strongest = 0;
   for (const Candidate& c : candidates) strongest = std::max(strongest, c.response);
@@ -144,14 +144,15 @@ float smallest_response(const GreyView& image, const std::vector<Candidate>& can
     const int y = std::clamp(static_cast<int>(std::lround(p.y())), kReach, image.height_px - kReach - 1);
     strongest = std::max(strongest, corner_response(image, x, y));
   }
-  const double faintest = std::max(config.min_gradient_grey, config.noise_factor * noise_sigma_grey(image));
+  const double faintest = std::max(config.min_gradient_grey, config.noise_factor * noise_grey);
   return std::max(static_cast<float>(config.quality) * strongest, static_cast<float>(faintest * faintest));
 }
 
 }  // namespace
 
-std::vector<Eigen::Vector2f> find_corners(const GreyView& image, const std::vector<Eigen::Vector2f>& taken,
-                                          size_t wanted, const CornerConfig& config) {
+std::vector<Eigen::Vector2f> find_corners(const GreyView& image, double noise_grey,
+                                          const std::vector<Eigen::Vector2f>& taken, size_t wanted,
+                                          const CornerConfig& config) {
   std::vector<Eigen::Vector2f> corners;
   const int least_px = 2 * config.border_px + kSize;
   if (wanted == 0 || image.width_px < least_px || image.height_px < least_px) return corners;
@@ -163,7 +164,7 @@ std::vector<Eigen::Vector2f> find_corners(const GreyView& image, const std::vect
     ++cells.at(p.x(), p.y()).features;
   }
   const std::vector<Candidate> found = CandidateSearch(image, features, config.border_px).found;
-  const float smallest = smallest_response(image, found, taken, config);
+  const float smallest = smallest_response(image, noise_grey, found, taken, config);
   for (const Candidate& c : found)
     if (c.response >= smallest)
       cells.at(static_cast<float>(c.x), static_cast<float>(c.y)).candidates.push_back(c);

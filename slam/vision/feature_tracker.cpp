@@ -204,7 +204,7 @@ struct FeatureTracker::Impl {
     const size_t before = tracks.size();
     const GreyView image = flow.newest();
     for (const Eigen::Vector2f& corner :
-         find_corners(image, windows(tracks), most - tracks.size(), config.corners)) {
+         find_corners(image, flow.noise_grey(), windows(tracks), most - tracks.size(), config.corners)) {
       const WindowShape shape = window_shape(image, static_cast<int>(corner.x()),
                                              static_cast<int>(corner.y()), config.flow.window_px);
       Track track{next_id, shape, corner, shape.centre_px(), Vec2::Zero()};

@@ -1,7 +1,10 @@
 #include "slam/vision/optical_flow.h"
 
+#include <array>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/video/tracking.hpp>
+
+#include "slam/vision/corner_response.h"
 
 namespace vsslam {
 
@@ -9,6 +12,7 @@ void OpticalFlowConfig::fields(Fields& f) {
   f("window_px", window_px, between(5, 63));
   f("levels", levels, between(0, 6));
   f("max_return_px", max_return_px, positive());
+  f("smoothing_px", smoothing_px, between(0, 5));
   f.choice("equalize", equalize,
            {{"automatic", Equalize::automatic}, {"always", Equalize::always}, {"never", Equalize::never}});
   f("clip_limit", clip_limit, positive());
@@ -16,6 +20,7 @@ void OpticalFlowConfig::fields(Fields& f) {
   f("dark_grey", dark_grey, between(0, 255));
   f("bright_grey", bright_grey, between(0, 255));
   f("hysteresis_grey", hysteresis_grey, between(0, 100));
+  f("max_noise_grey", max_noise_grey, positive());
   f.check(window_px % 2 == 1, "window_px", "an odd number");
   f.check(dark_grey + 2 * hysteresis_grey < bright_grey, "dark_grey",
           "below bright_grey by twice hysteresis_grey");
@@ -31,18 +36,30 @@ Points to_cv(const std::vector<Eigen::Vector2f>& points) {
   return result;
 }
 
-// Of every 16th pixel.
-double median_grey(const cv::Mat& image) {
-  std::array<uint32_t, 256> histogram{};
-  uint32_t count = 0, below = 0;
-  for (int y = 0; y < image.rows; y += 4)
-    for (int x = 0; x < image.cols; x += 4, ++count) ++histogram[image.at<uint8_t>(y, x)];
-  for (size_t grey = 0; grey < histogram.size(); ++grey) {
-    below += histogram[grey];
-    if (2 * below >= count) return static_cast<double>(grey);
-  }
-  return 255;
+GreyView view_of(const cv::Mat& image) {
+  return {image.data, image.cols, image.rows, static_cast<ptrdiff_t>(image.step)};
 }
+
+// The grey values of every 16th pixel, sorted.
+class GreyQuantiles {
+ public:
+  explicit GreyQuantiles(const cv::Mat& image) {
+    for (int y = 0; y < image.rows; y += 4)
+      for (int x = 0; x < image.cols; x += 4, ++count_) ++histogram_[image.at<uint8_t>(y, x)];
+  }
+  double operator()(double share) const {
+    uint32_t below = 0;
+    for (size_t grey = 0; grey < histogram_.size(); ++grey) {
+      below += histogram_[grey];
+      if (below >= share * count_) return static_cast<double>(grey);
+    }
+    return 255;
+  }
+
+ private:
+  std::array<uint32_t, 256> histogram_{};
+  uint32_t count_ = 0;
+};
 
 }  // namespace
 
@@ -55,6 +72,7 @@ struct OpticalFlow::Impl {
   int width_px, height_px;
   cv::Ptr<cv::CLAHE> clahe;
   bool equalizing = false;
+  double noise_grey = 0;  // of the newest image as delivered
   Image last, newest;
 
   Impl(const OpticalFlowConfig& c, int width, int height)
@@ -66,18 +84,23 @@ struct OpticalFlow::Impl {
   cv::Size window() const { return {config.window_px, config.window_px}; }
 
   void prepare(Image& image) {
-    if (equalizing) {
-      clahe->apply(image.raw, image.seen);
+    if (config.smoothing_px > 0) {
+      cv::GaussianBlur(image.raw, image.seen, {0, 0}, config.smoothing_px);
     } else {
       image.raw.copyTo(image.seen);
     }
+    if (equalizing) clahe->apply(image.seen, image.seen);
     cv::buildOpticalFlowPyramid(image.seen, image.pyramid, window(), config.levels, true,
                                 cv::BORDER_REFLECT_101, cv::BORDER_CONSTANT, false);
   }
 
   bool wants_equalizing(const cv::Mat& raw) const {
     if (config.equalize != Equalize::automatic) return config.equalize == Equalize::always;
-    const double median = median_grey(raw), margin = equalizing ? config.hysteresis_grey : 0;
+    if (noise_grey > (equalizing ? 1.3 : 1) * config.max_noise_grey) return false;
+    const GreyQuantiles quantile(raw);
+    constexpr double kNoContrast_grey = 8;
+    if (quantile(0.98) - quantile(0.02) < kNoContrast_grey) return false;  // a covered lens
+    const double median = quantile(0.5), margin = equalizing ? config.hysteresis_grey : 0;
     return median < config.dark_grey + margin || median > config.bright_grey - margin;
   }
 
@@ -102,6 +125,7 @@ void OpticalFlow::push(const CameraFrame& image) {
   std::swap(s.last, s.newest);
   // OpenCV has no read-only view; the copy outlives the caller's image.
   cv::Mat(s.height_px, s.width_px, CV_8U, const_cast<uint8_t*>(image.grey.data())).copyTo(s.newest.raw);
+  s.noise_grey = noise_sigma_grey(view_of(s.newest.raw));
   const bool was = s.equalizing;
   s.equalizing = s.wants_equalizing(s.newest.raw);
   s.prepare(s.newest);
@@ -110,12 +134,15 @@ void OpticalFlow::push(const CameraFrame& image) {
 }
 
 GreyView OpticalFlow::newest() const {
-  const cv::Mat& image = impl_->newest.seen;
-  return {image.data, image.cols, image.rows, static_cast<ptrdiff_t>(image.step)};
+  return view_of(impl_->newest.seen);
 }
 
 bool OpticalFlow::equalized() const {
   return impl_->equalizing;
+}
+
+double OpticalFlow::noise_grey() const {
+  return impl_->noise_grey * (impl_->equalizing ? impl_->config.clip_limit : 1);
 }
 
 std::vector<std::optional<Eigen::Vector2f>> OpticalFlow::follow(

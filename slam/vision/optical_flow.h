@@ -17,13 +17,17 @@ struct OpticalFlowConfig {
   int window_px = 21;          ///< odd
   int levels = 3;              ///< of the pyramid above the image itself, each half the size
   double max_return_px = 0.5;  ///< a point followed there and back must come home to within this
-  /// Contrast-limited adaptive histogram equalisation (Zuiderveld 1994) before anything else.
+  double smoothing_px = 1.0;   ///< sigma of the Gaussian that all images go through: noise in the gradients
+                               ///< holds tracks back
+  /// Contrast-limited adaptive histogram equalisation (Zuiderveld 1994) of the smoothed image.
   Equalize equalize = Equalize::automatic;
   double clip_limit = 3.0;
   int clahe_tiles = 8;            ///< per side
   double dark_grey = 50.0;        ///< automatic: if the image's median is below this,
   double bright_grey = 205.0;     ///< or above this,
   double hysteresis_grey = 10.0;  ///< until it is back by this much
+  double max_noise_grey = 1.5;    ///< and if it is not noisier: where noise, not the step of the grey values,
+                                  ///< hides the texture, it would be amplified with it, and that unsteadily
   void fields(Fields& f);
 };
 
@@ -37,6 +41,8 @@ class OpticalFlow {
   /// The newest image as features see it (equalised where that is on); valid until the next push.
   GreyView newest() const;
   bool equalized() const;
+  /// Standard deviation of the newest image's noise, were it not smoothed; with equalisation at most so much.
+  double noise_grey() const;
 
   /// Needs two images. `guess_px`: where to start looking. Empty: lost.
   std::vector<std::optional<Eigen::Vector2f>> follow(const std::vector<Eigen::Vector2f>& last_px,

@@ -73,7 +73,7 @@ void BM_FindAllCorners(benchmark::State& state) {
   static const Film film({.noise_grey = 2});
   const CameraFrame& image = film.images.front();
   const GreyView view{image.grey.data(), image.width_px, image.height_px, image.width_px};
-  for (auto unused : state) benchmark::DoNotOptimize(find_corners(view, {}, 150, {}));
+  for (auto unused : state) benchmark::DoNotOptimize(find_corners(view, 2, {}, 150, {}));
 }
 BENCHMARK(BM_FindAllCorners)->Unit(benchmark::kMillisecond);
 
