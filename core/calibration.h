@@ -37,7 +37,6 @@ struct CameraCalibration {
   double fx_px = 384.2, fy_px = 384.2, cx_px = 319.5, cy_px = 236.4;
   double k1 = 0, k2 = 0, p1 = 0, p2 = 0;
   double rate_hz = 30.0;
-  double time_offset_s = 0;  ///< added to the camera's stamps gives the IMU's time
 };
 
 struct RigCalibration {

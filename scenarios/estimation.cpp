@@ -27,6 +27,8 @@ OdometryChunk OdometryRun::add(std::shared_ptr<const Chunk> chunk) {
       odometry_.add(imu->sample);
     } else if (const auto* wheels = std::get_if<WheelMeasurement>(&measurement)) {
       odometry_.add(wheels->sample);
+    } else if (const auto* camera = std::get_if<CameraMeasurement>(&measurement)) {
+      odometry_.add(camera->frame);
     } else if (const auto* lidar = std::get_if<LidarMeasurement>(&measurement)) {
       const int64_t start_ns = now_ns(clock_);
       result.scans.push_back(odometry_.add(lidar->scan));
@@ -42,6 +44,7 @@ MappingRun::MappingRun(const Scenario& scenario, Method method, StageClock* cloc
 std::vector<Belief> MappingRun::add(const OdometryChunk& chunk) {
   std::vector<Belief> beliefs;
   for (const Measurement& measurement : chunk.chunk->measurements) {
+    if (std::holds_alternative<CameraMeasurement>(measurement)) ++images_;
     const auto* lidar = std::get_if<LidarMeasurement>(&measurement);
     if (lidar == nullptr) continue;
     const size_t i = beliefs.size();
@@ -60,6 +63,10 @@ Belief MappingRun::add(const OdometryScan& scan, const LidarMeasurement& measure
   reports_.push_back(mapping_.add(scan));
   const ScanReport& report = reports_.back();
   truth_world_base_.push_back({measurement.scan.stamp, truth.T_world_base});
+  if (scan.visual) {
+    vio_start_base_.push_back({measurement.scan.stamp, scan.visual->T_start_base});
+    restarts_ = scan.visual->restarts;
+  }
   degeneracy_truth_.push_back(truth.degeneracy);
   if (report.key >= 0)
     key_scan_truth_.push_back(

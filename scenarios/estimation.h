@@ -48,6 +48,10 @@ class MappingRun {
   const Mapping& mapping() const { return mapping_; }
   const std::vector<ScanReport>& reports() const { return reports_; }
   const std::vector<StampedPose>& truth_world_base() const { return truth_world_base_; }
+  /// The prior's own way, where it sees; else empty.
+  const std::vector<StampedPose>& vio_start_base() const { return vio_start_base_; }
+  int restarts() const { return restarts_; }
+  int64_t images() const { return images_; }
   const std::vector<DegeneracyTruth>& degeneracy_truth() const { return degeneracy_truth_; }
   const std::vector<KeyScanTruth>& key_scan_truth() const { return key_scan_truth_; }
 
@@ -58,7 +62,9 @@ class MappingRun {
   StageClock* clock_;
   Mapping mapping_;
   std::vector<ScanReport> reports_;
-  std::vector<StampedPose> truth_world_base_;
+  std::vector<StampedPose> truth_world_base_, vio_start_base_;
+  int restarts_ = 0;
+  int64_t images_ = 0;
   std::vector<DegeneracyTruth> degeneracy_truth_;
   std::vector<KeyScanTruth> key_scan_truth_;
   SE3 T_world_map_;

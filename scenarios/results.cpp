@@ -56,9 +56,10 @@ void score_trajectories(const RunRecord& record, Metrics& m) {
   m.rpe_10m_deg = estimate.rpe_10m_deg;
   m.end_error_m = estimate.end_error_m;
   m.odometry_ate_rmse_m = score(record.estimation.mapping().trajectory_odom_base(), truth).ate_rmse_m;
+  if (!record.estimation.vio_start_base().empty())
+    m.vio_ate_rmse_m = score(record.estimation.vio_start_base(), truth).ate_rmse_m;
   const Cloud map = record.estimation.mapping().map_cloud(record.scenario.map_voxel_m);
-  if (!map.empty())
-    m.map_error_mean_m = map_error(map, estimate.T_truth_estimate, record.surface).mean_m;
+  if (!map.empty()) m.map_error_mean_m = map_error(map, estimate.T_truth_estimate, record.surface).mean_m;
 }
 
 Scenario scenario_of(const RunRecord& record) {
@@ -78,6 +79,8 @@ ScoredRun score_run(const RunRecord& record) {
   m.seed = record.seed;
   m.duration_s = record.duration_s;
   m.scans = static_cast<int64_t>(record.estimation.reports().size());
+  m.images = record.estimation.images();
+  m.restarts = record.estimation.restarts();
   score_trajectories(record, m);
   m.descriptors = score_descriptors(record.estimation.mapping());
   score_loops(record, scored);
@@ -93,6 +96,8 @@ void write_results(const fs::path& folder, const RunRecord& record, const Scored
   write_tum(folder / "truth.tum", record.estimation.truth_world_base());
   write_tum(folder / "estimate.tum", mapping.trajectory_map_base());
   write_tum(folder / "odometry.tum", mapping.trajectory_odom_base());
+  if (!record.estimation.vio_start_base().empty())
+    write_tum(folder / "vio.tum", record.estimation.vio_start_base());
   write_file(folder / "scans.csv", scans_csv(record.estimation, scored.loops));
   write_file(folder / "loops.csv", loops_csv(mapping.loops(), scored.loops));
   write_file(folder / "descriptors.csv", descriptors_csv(mapping));

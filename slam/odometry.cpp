@@ -7,8 +7,20 @@
 #include "slam/inertial/rest_alignment.h"
 #include "slam/lidar/undistort.h"
 #include "slam/map/map_cloud.h"
+#include "slam/vision/vio_prior.h"
 
 namespace vsslam {
+
+namespace {
+
+std::unique_ptr<MotionPrior> make_prior(const SlamConfig& config, const RigCalibration& rig,
+                                        StageClock* clock) {
+  if (config.prior == PriorKind::vio)
+    return std::make_unique<VioPrior>(config.vision, config.inertial, rig, clock);
+  return make_motion_prior(config.prior, config.inertial, rig);
+}
+
+}  // namespace
 
 struct Odometry::Impl {
   SlamConfig config;
@@ -24,7 +36,7 @@ struct Odometry::Impl {
       : config(slam_config),
         rig(rig_calibration),
         clock(stage_clock),
-        prior(make_motion_prior(config.prior, config.inertial, rig)),
+        prior(make_prior(config, rig, clock)),
         lidar(config.odometry),
         imu_before_start(track_limits(config.inertial)) {}
 
@@ -62,6 +74,7 @@ OdometryScan Odometry::Impl::add(const LidarScan& scan) {
   const SE3 T_odom_base = registration.T_odom_lidar * rig.lidar.T_base_lidar.inverse();
   // 5 what the LiDAR has seen corrects the prior's biases and velocity
   correct_prior(scan.stamp, T_odom_base, registration);
+  prior->add_scan(scan.stamp, points_lidar, T_odom_base);
   last_odom_base = StampedPose{scan.stamp, T_odom_base};
 
   OdometryScan result;
@@ -76,6 +89,7 @@ OdometryScan Odometry::Impl::add(const LidarScan& scan) {
   report.converged = registration.converged;
   report.degenerate_directions = registration.degeneracy.directions;
   report.used_prior_only = registration.used_prior_only;
+  result.visual = prior->visual_report();
   // 6 far enough from the last key scan? then it enters the local map
   if (lidar.wants_key(T_odom_base)) make_key(scan, thin, std::move(points_lidar), result);
   return result;
@@ -149,6 +163,9 @@ void Odometry::add(const ImuSample& sample) {
 }
 void Odometry::add(const WheelSample& sample) {
   impl_->prior->add(sample);
+}
+void Odometry::add(const CameraFrame& image) {
+  impl_->prior->add(image);
 }
 OdometryScan Odometry::add(const LidarScan& scan) {
   return impl_->add(scan);

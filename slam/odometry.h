@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/calibration.h"
@@ -16,8 +17,9 @@ namespace vsslam {
 
 /// A registered scan; with clouds (lidar frame at its stamp) if it is a key scan.
 struct OdometryScan {
-  ScanReport report;  ///< key and T_map_base are the mapping's to fill
-  Time end;           ///< of the scan
+  ScanReport report;                   ///< key and T_map_base are the mapping's to fill
+  Time end;                            ///< of the scan
+  std::optional<VisualReport> visual;  ///< of the prior `vio`
   bool is_key = false;
   SharedCloud features_lidar;    ///< planar points, thinned by `odometry.voxel_m`
   SharedCloud points_lidar;      ///< all undistorted points
@@ -31,6 +33,7 @@ class Odometry {
 
   void add(const ImuSample& sample);
   void add(const WheelSample& sample);
+  void add(const CameraFrame& image);
   /// Samples of the other sensors up to scan.end should have been added before.
   OdometryScan add(const LidarScan& scan);
 

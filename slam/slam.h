@@ -17,6 +17,7 @@ class Slam {
 
   void add(const ImuSample& sample) { odometry_.add(sample); }
   void add(const WheelSample& sample) { odometry_.add(sample); }
+  void add(const CameraFrame& image) { odometry_.add(image); }
   /// Samples of the other sensors up to scan.end should have been added before.
   ScanReport add(const LidarScan& scan) { return mapping_.add(odometry_.add(scan)); }
   /// Last optimisation; call once after the last sample.

@@ -4,11 +4,13 @@ namespace vsslam {
 
 void SlamConfig::fields(Fields& f) {
   f.choice("prior", prior,
-           {{"wheel_imu", PriorKind::wheel_imu},
+           {{"vio", PriorKind::vio},
+            {"wheel_imu", PriorKind::wheel_imu},
             {"imu", PriorKind::imu},
             {"wheel", PriorKind::wheel},
             {"constant_velocity", PriorKind::constant_velocity}});
   f("inertial", inertial);
+  f("vision", vision);
   f("odometry", odometry);
   f("loop", loop);
   f("graph", graph);

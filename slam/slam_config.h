@@ -6,12 +6,14 @@
 #include "slam/inertial/motion_prior.h"
 #include "slam/lidar/lidar_odometry.h"
 #include "slam/loop/loop_config.h"
+#include "slam/vision/vision_config.h"
 
 namespace vsslam {
 
 struct SlamConfig {
   PriorKind prior = PriorKind::wheel_imu;
   InertialConfig inertial;
+  VisionConfig vision;
   LidarOdometryConfig odometry;
   LoopConfig loop;
   PoseGraphConfig graph;

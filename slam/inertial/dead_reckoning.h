@@ -19,6 +19,7 @@ class DeadReckoning : public MotionPrior {
   void add(const WheelSample& sample) override;
   MotionPath path(Time begin, Time end) const override;
   void correct(const OdometryFix& fix) override;
+  const Vec3& gyro_bias_radps() const { return gyro_bias_.bias_radps(); }
 
  private:
   std::vector<Time> knot_stamps(Time begin, Time end) const;

@@ -3,12 +3,14 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/calibration.h"
 #include "core/config.h"
 #include "core/samples.h"
 #include "core/se3.h"
+#include "slam/lidar/cloud.h"
 
 namespace vsslam {
 
@@ -44,9 +46,9 @@ struct InitialState {
   bool at_rest = false;
 };
 
-/// wheel_imu: gyroscope and wheels; imu: preintegration; wheel: wheels alone; constant_velocity: the LiDAR
+/// vio: camera and IMU, wheel_imu while they restart; wheel_imu: gyroscope and wheels; imu: preintegration; wheel: wheels alone; constant_velocity: the LiDAR
 /// alone.
-enum class PriorKind { wheel_imu, imu, wheel, constant_velocity };
+enum class PriorKind { vio, wheel_imu, imu, wheel, constant_velocity };
 
 struct InertialConfig {
   double rest_gyro_radps = 0.02;  ///< IMU counts as at rest below this spread of the gyroscope ...
@@ -60,6 +62,13 @@ struct InertialConfig {
   void fields(Fields& f);
 };
 
+/// How visual odometry fares.
+struct VisualReport {
+  bool tracking = false;
+  int restarts = 0;  ///< so far
+  SE3 T_start_base;  ///< the prior's motions since the first fix, one after another: what it is worth alone
+};
+
 /// Predicts motion of the base. Implementations survive missing sensors: what is not covered by samples is
 /// continued at the velocity of the last two fixes.
 class MotionPrior {
@@ -69,12 +78,18 @@ class MotionPrior {
   virtual void start(const InitialState& state) = 0;
   virtual void add(const ImuSample&) {}
   virtual void add(const WheelSample&) {}
+  virtual void add(const CameraFrame&) {}
   /// Motion from `begin`, the stamp of the last fix, to `end`. Never throws, always finite.
   virtual MotionPath path(Time begin, Time end) const = 0;
   /// Called once per scan, in order.
   virtual void correct(const OdometryFix& fix) = 0;
+  /// The undistorted scan of the last fix.
+  virtual void add_scan(Time /*stamp*/, const Cloud& /*points_lidar*/, const SE3& /*T_odom_base*/) {}
+  /// Of a prior that sees.
+  virtual std::optional<VisualReport> visual_report() const { return std::nullopt; }
 };
 
+/// Not for `vio`, see slam/vision/vio_prior.h.
 std::unique_ptr<MotionPrior> make_motion_prior(PriorKind kind, const InertialConfig& config,
                                                const RigCalibration& rig);
 

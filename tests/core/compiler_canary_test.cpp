@@ -20,6 +20,17 @@ TEST(CompilerCanary, EigenSelectWithAScalarBranch) {
     ASSERT_EQ(selected.data()[i], a.data()[i] > 0 ? 0.0 : a.data()[i]) << "cell " << i;
 }
 
+// With Eigen told that malloc's 16 bytes suffice, AVX kernels crash on the buffers of large products.
+TEST(CompilerCanary, LargeEigenProductsDoNotCrash) {
+  for (const int n : {120, 200, 400}) {
+    const Eigen::MatrixXd a = Eigen::MatrixXd::Identity(n, n) * 2;
+    const Eigen::MatrixXd b = Eigen::MatrixXd::Constant(n, n, 0.5);
+    EXPECT_EQ((a * b).sum(), 1.0 * n * n);
+    EXPECT_EQ((a.cast<float>() * b.cast<float>()).sum(), 1.0f * static_cast<float>(n * n));
+    EXPECT_EQ(a.ldlt().solve(b).sum(), 0.25 * n * n);
+  }
+}
+
 // Contraction of a * b + c into one rounding would change bytes between machines and optimisation levels.
 TEST(CompilerCanary, ProductsAreRoundedBeforeSums) {
   volatile double a = 1.0 + 0x1p-30, b = 1.0 - 0x1p-30, c = -1.0;

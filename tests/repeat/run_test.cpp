@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "core/files.h"
@@ -74,6 +75,19 @@ TEST(Repeat, SameBytesForOneAndTwoThreadsAndAllMethods) {
 TEST(Repeat, ClosedLoopToo) {
   Scenario scenario = short_scenario("closed_loop=true");
   expect_same(run_into("closed_1", scenario, 1), run_into("closed_2", scenario, 2));
+}
+
+// Light maps, images, features and the window. What the camera alone makes of the way is within a percent.
+TEST(Repeat, CameraAndVisualInertialOdometryToo) {
+  const Scenario scenario = load_scenario("quick_room_vio", {{"max_duration_s", "6"}, {"map_voxel_m", "0.2"}});
+  const fs::path one = run_into("camera_1", scenario, 1);
+  expect_same(one, run_into("camera_2", scenario, 2));
+  const fs::path folder = one / "quick_room_vio" / "sc-lvi-sam" / "seed_1";
+  EXPECT_TRUE(fs::exists(folder / "vio.tum"));
+  const auto metrics = nlohmann::json::parse(read_file(folder / "metrics.json"));
+  EXPECT_GT(metrics["images"].get<int>(), 150);
+  EXPECT_EQ(metrics["restarts"].get<int>(), 0);
+  EXPECT_LT(metrics["vio_ate_rmse_m"].get<double>(), 0.01 * metrics["path_length_m"].get<double>());
 }
 
 TEST(Repeat, SavedScenarioGivesTheSameRun) {

@@ -186,7 +186,6 @@ TEST(RigCamera, TheEstimatorIsToldItsIntrinsics) {
   EXPECT_EQ(camera.k1, -0.1);
   EXPECT_EQ(camera.p2, 0.001);
   EXPECT_EQ(camera.rate_hz, 15);
-  EXPECT_EQ(camera.time_offset_s, 0);
 }
 
 }  // namespace

@@ -1,0 +1,112 @@
+#include "slam/vision/vio_prior.h"
+
+namespace vsslam {
+
+void VisionConfig::fields(Fields& f) {
+  f("tracker", tracker);
+  f("depth", depth);
+  f("vio", vio);
+  f("lidar_depth", lidar_depth);
+  f("lidar_aid", lidar_aid);
+}
+
+VioPrior::VioPrior(const VisionConfig& config, const InertialConfig& inertial, const RigCalibration& rig,
+                   StageClock* clock)
+    : config_(config),
+      rig_(rig),
+      clock_(clock),
+      tracker_(config.tracker, rig.camera),
+      depth_(config.depth, rig),
+      vio_(config.vio, rig, clock),
+      fallback_(inertial, rig, true, true),
+      imu_(track_limits(inertial)) {}
+
+void VioPrior::start(const InitialState& state) {
+  fallback_.start(state);
+}
+
+void VioPrior::add(const ImuSample& sample) {
+  fallback_.add(sample);
+  imu_.add(sample);
+  vio_.add(sample);
+}
+
+// One image: track, give depth, slide the window.
+void VioPrior::add(const CameraFrame& image) {
+  const StageTimer whole(clock_, "image");
+  const Time stamp = image.stamp + Duration::from_seconds(config_.vio.time_offset_s);
+  VisualFrame frame;
+  {
+    const StageTimer timer(clock_, "track");
+    const std::optional<Quat> q_last_now = last_image_ ? camera_turn(*last_image_, stamp) : std::nullopt;
+    frame = tracker_.track(image, q_last_now ? &*q_last_now : nullptr);
+  }
+  last_image_ = stamp;
+  if (config_.lidar_depth) fill_depth(stamp, frame);
+  vio_.add(frame);
+}
+
+// Rotation of the camera between two images by the gyroscope: coordinates of the later frame into the earlier.
+std::optional<Quat> VioPrior::camera_turn(Time from, Time to) const {
+  if (!imu_.at(from) || !imu_.at(to)) return std::nullopt;
+  const Quat q_from_to = fallback_.path(from, to).end_pose().rotation;
+  const Quat& q_base_camera = rig_.camera.T_base_camera.rotation;
+  return q_base_camera.conjugate() * q_from_to * q_base_camera;
+}
+
+void VioPrior::fill_depth(Time stamp, VisualFrame& frame) const {
+  const std::optional<OdometryFix>& last = fixes_.last();
+  if (!last || stamp < last->stamp) return;
+  const StageTimer timer(clock_, "depth");
+  const SE3 T_odom_base = last->T_odom_base * path(last->stamp, stamp).end_pose();
+  depth_.fill(frame, T_odom_base * rig_.camera.T_base_camera);
+}
+
+std::optional<MotionPath> VioPrior::visual_path(Time begin, Time end) const {
+  const std::vector<StampedPose> poses = vio_.path_vio_imu(begin, end);
+  if (poses.empty()) return std::nullopt;
+  const SE3& T_base_imu = rig_.imu.T_base_imu;
+  const SE3 T_imu_base = T_base_imu.inverse();
+  const SE3 T_begin_vio = T_base_imu * poses.front().pose.inverse();
+  MotionPath path(begin);
+  for (const StampedPose& pose : poses) path.append(pose.stamp, T_begin_vio * pose.pose * T_imu_base);
+  return path;
+}
+
+MotionPath VioPrior::path(Time begin, Time end) const {
+  if (begin < end)
+    if (std::optional<MotionPath> visual = visual_path(begin, end)) return std::move(*visual);
+  return fallback_.path(begin, end);
+}
+
+void VioPrior::correct(const OdometryFix& fix) {
+  if (fixes_.last()) T_start_base_ = T_start_base_ * path(fixes_.last()->stamp, fix.stamp).end_pose();
+  fixes_.add(fix);
+  fallback_.correct(fix);
+  if (config_.lidar_aid) vio_.add(aid(fix));
+  imu_.forget_before(last_image_ ? std::min(*last_image_, fix.stamp) : fix.stamp);
+}
+
+// Pose, velocity and bias that the LiDAR side vouches for.
+VioAid VioPrior::aid(const OdometryFix& fix) const {
+  VioAid aid;
+  aid.stamp = fix.stamp;
+  aid.T_odom_imu = fix.T_odom_base * rig_.imu.T_base_imu;
+  const Vec3 omega_base = fixes_.twist().head<3>(), v_base = fixes_.twist().tail<3>();
+  aid.v_odom_mps = fix.T_odom_base.rotation * (v_base + omega_base.cross(rig_.imu.T_base_imu.translation));
+  aid.bias.gyro_radps = fallback_.gyro_bias_radps();
+  if (vio_.status() == VioStatus::tracking) aid.bias.accel_mps2 = vio_.state().bias.accel_mps2;
+  return aid;
+}
+
+void VioPrior::add_scan(Time stamp, const Cloud& points_lidar, const SE3& T_odom_base) {
+  if (!config_.lidar_depth) return;
+  const StageTimer timer(clock_, "depth_map");
+  depth_.add(stamp, points_lidar, T_odom_base);
+}
+
+std::optional<VisualReport> VioPrior::visual_report() const {
+  return VisualReport{vio_.status() == VioStatus::tracking, vio_.restarts(), T_start_base_};
+}
+
+}  // namespace vsslam
