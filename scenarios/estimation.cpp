@@ -29,6 +29,7 @@ OdometryChunk OdometryRun::add(std::shared_ptr<const Chunk> chunk) {
       odometry_.add(wheels->sample);
     } else if (const auto* camera = std::get_if<CameraMeasurement>(&measurement)) {
       odometry_.add(camera->frame);
+      pictures_.add(camera->frame);
     } else if (const auto* lidar = std::get_if<LidarMeasurement>(&measurement)) {
       const int64_t start_ns = now_ns(clock_);
       result.scans.push_back(odometry_.add(lidar->scan));

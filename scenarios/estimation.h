@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "scenarios/belief.h"
+#include "scenarios/contact_sheet.h"
 #include "scenarios/oracles/loop_truth.h"
 #include "scenarios/sensing.h"
 #include "slam/mapping.h"
@@ -29,10 +30,12 @@ class OdometryRun {
   OdometryRun(const Scenario& scenario, StageClock* clock);
 
   OdometryChunk add(std::shared_ptr<const Chunk> chunk);
+  const ContactSheet& pictures() const { return pictures_; }
 
  private:
   StageClock* clock_;
   Odometry odometry_;
+  ContactSheet pictures_;
 };
 
 /// Not thread-safe; one per method and seed.

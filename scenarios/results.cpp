@@ -98,6 +98,7 @@ void write_results(const fs::path& folder, const RunRecord& record, const Scored
   write_tum(folder / "odometry.tum", mapping.trajectory_odom_base());
   if (!record.estimation.vio_start_base().empty())
     write_tum(folder / "vio.tum", record.estimation.vio_start_base());
+  if (const std::string png = record.pictures.png(); !png.empty()) write_file(folder / "camera.png", png);
   write_file(folder / "scans.csv", scans_csv(record.estimation, scored.loops));
   write_file(folder / "loops.csv", loops_csv(mapping.loops(), scored.loops));
   write_file(folder / "descriptors.csv", descriptors_csv(mapping));

@@ -18,6 +18,7 @@ struct RunRecord {
   const Raycaster& raycaster;
   const SurfaceDistance& surface;
   const MappingRun& estimation;
+  const ContactSheet& pictures;
   uint64_t seed = 0;
   double duration_s = 0;
 };

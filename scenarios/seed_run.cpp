@@ -191,6 +191,7 @@ FinishedRun SeedRun::write_result(Lane& lane) {
                          .raycaster = sensing_->raycaster(),
                          .surface = context_.surface(),
                          .estimation = *lane.estimation,
+                         .pictures = odometry_->pictures(),
                          .seed = seed_,
                          .duration_s = driving_->until().seconds()};
   PendingFolder folder(run.folder);

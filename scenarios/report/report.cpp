@@ -12,6 +12,7 @@
 #include "core/errors.h"
 #include "core/files.h"
 #include "report_page.h"
+#include "scenarios/report/base64.h"
 #include "scenarios/report/page_data.h"
 #include "scenarios/report/page_tables.h"
 #include "scenarios/report/stored_result.h"
@@ -59,6 +60,12 @@ std::string figures(std::span<const StoredResult> results) {
       results.size() == 1 ? "one" : "many", metrics_html(results), expectations_html(results));
 }
 
+std::string camera_html(const StoredResult& result) {
+  if (result.camera_png.empty()) return {};
+  return fmt::format("<img alt=\"camera images\" style=\"width:100%\" src=\"data:image/png;base64,{}\">\n",
+                     base64(result.camera_png));
+}
+
 std::string page(std::span<const StoredResult> results) {
   const bool alone = results.size() == 1;
   return fill(
@@ -69,6 +76,9 @@ std::string page(std::span<const StoredResult> results) {
        {"headline", alone ? headline_html(results[0]) : ""},
        {"figures_above", alone ? "" : figures(results)},
        {"figures_below", alone ? figures(results) : ""},
+       {"camera",
+        section("camera", "What the camera saw", "Images spread over the run, half their size, row by row.",
+                alone ? camera_html(results[0]) : "")},
        {"loops",
         section("loops", "Loop candidates",
                 "Every candidate, accepted or not, judged against exact truth. Point at a row to see it on "

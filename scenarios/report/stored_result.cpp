@@ -58,6 +58,7 @@ StoredResult read_stored_result(const fs::path& path) {
   result.scans = read_table(path / "scans.csv", kScanColumns);
   result.loops = read_table(path / "loops.csv", kLoopColumns);
   result.descriptors = read_table(path / "descriptors.csv", kDescriptorColumns);
+  if (fs::exists(path / "camera.png")) result.camera_png = read_file(path / "camera.png");
   if (fs::exists(path / "map.ply")) result.points_map = read_ply_points(path / "map.ply");
   return result;
 }

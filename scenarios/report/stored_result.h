@@ -22,6 +22,7 @@ struct StoredResult {
   PoseTrajectory odometry;                        ///< T_odom_base; empty without odometry.tum
   std::optional<CsvTable> scans, loops, descriptors;
   std::optional<Cloud> points_map;
+  std::string camera_png;                         ///< empty without camera.png
 
   std::string name() const { return scenario + " · " + method + " · seed " + seed; }
 };
