@@ -28,7 +28,6 @@ class Driving {
   double expected_duration_s() const;
   DriveOutcome outcome() const { return simulation_.outcome(); }
   std::string outcome_text() const { return simulation_.outcome_text(); }
-  Simulation::Deviation spline_deviation() const { return simulation_.spline_deviation(); }
 
  private:
   void place_objects();

@@ -20,6 +20,7 @@ class DeadReckoning : public MotionPrior {
   MotionPath path(Time begin, Time end) const override;
   void correct(const OdometryFix& fix) override;
   const Vec3& gyro_bias_radps() const { return gyro_bias_.bias_radps(); }
+  const FixHistory& fixes() const { return fixes_; }
 
  private:
   std::vector<Time> knot_stamps(Time begin, Time end) const;

@@ -48,7 +48,7 @@ struct VisualInertialOdometry::Impl {
   std::optional<VioState> add(const VisualFrame& raw);
   std::optional<VioWindow> start(const VisualFrame& frame, const std::optional<RestMeans>& means);
   bool track(const VisualFrame& frame, const std::optional<RestMeans>& means);
-  bool make_room(WindowFrame& next, ImuSpan span);
+  void make_room(WindowFrame& next, ImuSpan span);
   void decide_key(const NewestView& view);
   void preintegrate_again();
   bool healthy(const VioState& expected) const;
@@ -108,7 +108,7 @@ bool VisualInertialOdometry::Impl::track(const VisualFrame& frame, const std::op
   // 2 a frame leaves: the newest if it was no key frame, else the oldest of a full window
   WindowFrame next;
   next.rest = means;
-  if (!make_room(next, std::move(*span))) return false;
+  make_room(next, std::move(*span));
   // 3 where the IMU expects the new frame
   const VioState& before = window.newest().state;
   next.id = window.newest().id + 1;
@@ -139,7 +139,7 @@ bool VisualInertialOdometry::Impl::track(const VisualFrame& frame, const std::op
 }
 
 // `span` leads from the newest frame of the window to `next`.
-bool VisualInertialOdometry::Impl::make_room(WindowFrame& next, ImuSpan span) {
+void VisualInertialOdometry::Impl::make_room(WindowFrame& next, ImuSpan span) {
   WindowFrame& last = window.newest();
   // Its IMU ended with the sample at hand; by now there are those on both sides.
   if (!last.span.empty()) last.span.back() = span.front();
@@ -158,7 +158,6 @@ bool VisualInertialOdometry::Impl::make_room(WindowFrame& next, ImuSpan span) {
   } else {
     next.span.insert(next.span.end(), span.begin() + (next.span.empty() ? 0 : 1), span.end());
   }
-  return true;
 }
 
 void VisualInertialOdometry::Impl::decide_key(const NewestView& view) {

@@ -55,7 +55,7 @@ std::optional<Quat> VioPrior::camera_turn(Time from, Time to) const {
 }
 
 void VioPrior::fill_depth(Time stamp, VisualFrame& frame) const {
-  const std::optional<OdometryFix>& last = fixes_.last();
+  const std::optional<OdometryFix>& last = fallback_.fixes().last();
   if (!last || stamp < last->stamp) return;
   const StageTimer timer(clock_, "depth");
   const SE3 T_odom_base = last->T_odom_base * path(last->stamp, stamp).end_pose();
@@ -80,8 +80,8 @@ MotionPath VioPrior::path(Time begin, Time end) const {
 }
 
 void VioPrior::correct(const OdometryFix& fix) {
-  if (fixes_.last()) T_start_base_ = T_start_base_ * path(fixes_.last()->stamp, fix.stamp).end_pose();
-  fixes_.add(fix);
+  if (fallback_.fixes().last())
+    T_start_base_ = T_start_base_ * path(fallback_.fixes().last()->stamp, fix.stamp).end_pose();
   fallback_.correct(fix);
   if (config_.lidar_aid) vio_.add(aid(fix));
   imu_.forget_before(last_image_ ? std::min(*last_image_, fix.stamp) : fix.stamp);
@@ -92,7 +92,7 @@ VioAid VioPrior::aid(const OdometryFix& fix) const {
   VioAid aid;
   aid.stamp = fix.stamp;
   aid.T_odom_imu = fix.T_odom_base * rig_.imu.T_base_imu;
-  const Vec3 omega_base = fixes_.twist().head<3>(), v_base = fixes_.twist().tail<3>();
+  const Vec3 omega_base = fallback_.fixes().twist().head<3>(), v_base = fallback_.fixes().twist().tail<3>();
   aid.v_odom_mps = fix.T_odom_base.rotation * (v_base + omega_base.cross(rig_.imu.T_base_imu.translation));
   aid.bias.gyro_radps = fallback_.gyro_bias_radps();
   if (vio_.status() == VioStatus::tracking) aid.bias.accel_mps2 = vio_.state().bias.accel_mps2;

@@ -37,7 +37,6 @@ class VioPrior : public MotionPrior {
   VisualInertialOdometry vio_;
   DeadReckoning fallback_;
   ImuTrack imu_;
-  FixHistory fixes_;
   std::optional<Time> last_image_;
   SE3 T_start_base_;  // the prior's own motions, one after another, up to the last fix
 };
