@@ -99,7 +99,7 @@ class Bounces {
     if (surfaces.object[k] == HitPacket::kNoHit) {
       if (from_sky_.empty()) return;
       const float z = scene_.lights.ambient ? std::abs(direction.z()) : direction.z();
-      from_sky_[i] += scene_.lights.sky(z) * std::numbers::pi_v<float> / static_cast<float>(rays_);
+      from_sky_[i] += scene_.lights.sky.dome(z) * std::numbers::pi_v<float> / static_cast<float>(rays_);
       return;
     }
     const size_t triangle = scene_.triangles.index(surfaces.object[k], surfaces.triangle[k]);

@@ -82,7 +82,8 @@ float LightSource::illuminance(const Vec3f& position, const Vec3f& normal) const
 }
 
 LightSources::LightSources(const World& world, const PlacedTriangles& triangles, const Illumination& lit)
-    : sky_luminance(static_cast<float>(lit.sky_luminance_cdpm2)), ambient(lit.ambient) {
+    : ambient(lit.ambient) {
+  sky.zenith = static_cast<float>(lit.sky_luminance_cdpm2);
   std::set<std::string> of_lights;
   for (const Light& light : world.lights) of_lights.insert(light.group);
   groups.assign(of_lights.begin(), of_lights.end());
@@ -91,8 +92,14 @@ LightSources::LightSources(const World& world, const PlacedTriangles& triangles,
     if (it == groups.end()) groups.push_back(name);
     return static_cast<int>(std::find(groups.begin(), groups.end(), name) - groups.begin());
   };
-  for (size_t i = 0; i < world.lights.size(); ++i)
+  for (size_t i = 0; i < world.lights.size(); ++i) {
     sources.push_back(source_of(world.lights[i], lit.light_level[i], group(world.lights[i].group)));
+    const LightSource& s = sources.back();
+    if (s.kind != LightSource::Kind::directional || s.intensity <= sky.sun_lux) continue;
+    sky.sun_lux = s.intensity;
+    sky.to_sun = -s.direction_world;
+    sun_group = s.group;
+  }
 
   size_t small = 0;
   for (size_t t = 0; t < triangles.all.size(); ++t) {
@@ -121,7 +128,7 @@ LightSources::LightSources(const World& world, const PlacedTriangles& triangles,
     const bool window = world.materials[static_cast<size_t>(triangles.all[glow.triangle].material)].glass;
     if (window) sources.back().upwards = kGroundAgainstSky;
   }
-  if (sky_luminance > 0) daylight_group = group("daylight");
+  if (sky.zenith > 0) daylight_group = group("daylight");
   if (lit.headlight.intensity_cd > 0) headlight_group = group("headlight");
 }
 

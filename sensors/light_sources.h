@@ -37,20 +37,32 @@ struct Glow {
   bool gathered = false;  ///< lights others by being hit: no source stands for it
 };
 
+/// Overcast sky (CIE): three times as bright in the zenith as at the horizon; dim ground below. About the sun
+/// (the strongest directional light) air and thin clouds glow: half as bright 7 degrees beside it.
+struct Sky {
+  float zenith = 0;  ///< cd/m^2
+  float sun_lux = 0;
+  Vec3f to_sun = Vec3f::UnitZ();
+
+  static constexpr float kBelowHorizon = 0.07f;
+  static constexpr float kGlow = 0.35f;  ///< at the sun, cd/m^2 for each lux of it (judgement)
+  static constexpr float kGlowRadius2_rad2 = 0.04f;
+  float dome(float direction_z) const {
+    return zenith * (direction_z > 0 ? (1 + 2 * direction_z) / 3 : kBelowHorizon);
+  }
+};
+
 struct LightSources {
   LightSources(const World& world, const PlacedTriangles& triangles, const Illumination& lit);
 
   std::vector<std::string>
       groups;  ///< of lights in alphabetical order; then "emissive", "daylight", "headlight"
   std::vector<LightSource> sources;
-  std::vector<Glow> glows;  ///< in order of triangles
-  int daylight_group = -1, headlight_group = -1;
-  float sky_luminance = 0;  ///< in the zenith
+  std::vector<Glow> glows;                        ///< in order of triangles
+  int daylight_group = -1, headlight_group = -1;  ///< -1: there is none
+  int sun_group = -1;
+  Sky sky;
   bool ambient = false;
-  /// Overcast sky (CIE): three times as bright in the zenith as at the horizon; dim ground below.
-  float sky(float direction_z) const {
-    return sky_luminance * (direction_z > 0 ? (1 + 2 * direction_z) / 3 : 0.07f);
-  }
 };
 
 }  // namespace vsslam

@@ -72,6 +72,13 @@ struct Renderer::Impl {
 
   float level(int group) const { return group < 0 ? 0.0f : levels[static_cast<size_t>(group)]; }
 
+  Sky sky() const {
+    Sky now = lights.sky;
+    now.zenith *= level(lights.daylight_group);
+    now.sun_lux *= level(lights.sun_group);
+    return now;
+  }
+
   Surfaces surfaces() const {
     const Headlight& h = illumination.headlight;
     return {.textures = textures,
@@ -81,7 +88,7 @@ struct Renderer::Impl {
             .headlight_cd = level(lights.headlight_group) * static_cast<float>(h.intensity_cd),
             .headlight_cos_inner = static_cast<float>(std::cos(0.75 * h.cone_rad)),
             .headlight_cos_outer = static_cast<float>(std::cos(h.cone_rad)),
-            .sky_luminance = level(lights.daylight_group) * lights.sky_luminance};
+            .sky = sky()};
   }
 
   const Raycaster& raycaster;

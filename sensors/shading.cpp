@@ -89,6 +89,13 @@ Floats headlight(const Surfaces& s, Floats range, Floats cos_axis, Floats cos_su
   return s.headlight_cd * edge * edge * cos_surface / (distance * distance);
 }
 
+Floats sky_luminance(const Sky& sky, const Vectors& d) {
+  const Floats dome = sky.zenith * (d.z > 0 ? (1.0f + 2.0f * d.z) / 3.0f : all(Sky::kBelowHorizon));
+  // 2 (1 - cos a) is a^2 but for large angles.
+  const Floats fall = 1.0f + 2.0f * (1.0f - d.dot(sky.to_sun)) / Sky::kGlowRadius2_rad2;
+  return dome + sky.sun_lux * Sky::kGlow / (fall * fall);
+}
+
 void shade_half(const Surfaces& s, const Viewpoint& view, const RayPacket& rays, const SurfacePacket& hits,
                 int first, ShadedPacket& shaded) {
   const float* records[8];
@@ -113,8 +120,7 @@ void shade_half(const Surfaces& s, const Viewpoint& view, const RayPacket& rays,
   Floats lux = baked_light(s.illuminance, rows, u, v);
   if (s.headlight_cd > 0) lux += headlight(s, range, cos_axis, max(along_normal, -along_normal));
   const Floats surface = rows.luminance() + reflectance * lux * (1 / std::numbers::pi_v<float>);
-  const Floats sky = s.sky_luminance * (d.z > 0 ? (1.0f + 2.0f * d.z) / 3.0f : all(0.07f));
-  store(shaded.luminance + first, missed ? sky : surface);
+  store(shaded.luminance + first, missed ? sky_luminance(s.sky, d) : surface);
   store(shaded.depth_m + first, missed ? all(std::numeric_limits<float>::infinity()) : depth);
 }
 

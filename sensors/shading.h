@@ -41,7 +41,7 @@ struct Surfaces {
   const std::vector<size_t>& first_of_object;
   const std::vector<float>& illuminance;  ///< of the light map's nodes; a row longer than these
   float headlight_cd, headlight_cos_inner, headlight_cos_outer;
-  float sky_luminance;  ///< in the zenith; see LightSources::sky
+  Sky sky;
 };
 
 struct ShadedPacket {

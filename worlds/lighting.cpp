@@ -30,13 +30,28 @@ double non_uniform_level(const LightingConfig& c, const Light& light, size_t ind
   return on < c.off_share ? 0.0 : 1 - (1 - c.dimmest_level) * age;
 }
 
-double daylight_level(const LightingConfig& c) {
+double sky_level(const LightingConfig& c) {
   return c.preset == Preset::low ? c.low_level : c.preset == Preset::dark ? c.night_level : 1.0;
 }
 
-double level(const LightingConfig& c, const Light& light, size_t index) {
-  if (is_daylight(light)) return daylight_level(c);
+// At dusk the sun has set and the sky is left; by night it stands for the moon.
+double sun_level(const LightingConfig& c) {
+  switch (c.preset) {
+    case Preset::low:
+      return 0;
+    case Preset::dark:
+      return c.night_level;
+    case Preset::bright:
+      return c.bright_level;
+    default:
+      return 1;
+  }
+}
+
+double level(const LightingConfig& c, const Light& light, size_t index, bool outdoors) {
+  if (is_daylight(light)) return sun_level(c);
   if (is_emergency(light)) return 1;
+  if (outdoors && (c.preset == Preset::low || c.preset == Preset::dark)) return 1;
   switch (c.preset) {
     case Preset::even:
       return 1;
@@ -78,12 +93,13 @@ void LightingConfig::fields(Fields& f) {
 
 Illumination illuminate(const World& world, const LightingConfig& c) {
   Illumination lit;
-  for (size_t i = 0; i < world.lights.size(); ++i) lit.light_level.push_back(level(c, world.lights[i], i));
+  const bool outdoors = std::any_of(world.lights.begin(), world.lights.end(), is_daylight);
+  for (size_t i = 0; i < world.lights.size(); ++i)
+    lit.light_level.push_back(level(c, world.lights[i], i, outdoors));
   const bool emits = std::any_of(world.materials.begin(), world.materials.end(),
                                  [](const Material& m) { return m.emissive.maxCoeff() > 0; });
   lit.ambient = world.lights.empty() && !emits;
-  if (lit.ambient || std::any_of(world.lights.begin(), world.lights.end(), is_daylight))
-    lit.sky_luminance_cdpm2 = c.sky_luminance_cdpm2 * daylight_level(c);
+  if (lit.ambient || outdoors) lit.sky_luminance_cdpm2 = c.sky_luminance_cdpm2 * sky_level(c);
   if (c.preset == Preset::bright) lit.glass_luminance_cdpm2 = c.window_luminance_cdpm2;
   const bool headlight = c.headlight == LightingConfig::Switch::automatic
                              ? c.preset == Preset::dark

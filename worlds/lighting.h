@@ -13,6 +13,8 @@ namespace vsslam {
 struct LightingConfig {
   /// even: all lamps burn. non_uniform: stretches without light, and lamps of unequal age. low: all dimmed.
   /// dark: only emergency lamps, and the headlight. bright: over-bright lamps, daylight in the panes.
+  /// In a world with a sun (a directional light): even: the sun through thin clouds. low: dusk, the sun has set.
+  /// dark: night. In both its lamps burn fully. bright: a clear sun, bright_level times as strong.
   enum class Preset { even, non_uniform, low, dark, bright };
   enum class Switch { automatic, on, off };
 
@@ -21,12 +23,12 @@ struct LightingConfig {
   double off_share = 0.4;                 ///< non_uniform: of the stretches
   double off_stretch_m = 9;               ///< non_uniform: lamps go out together within squares of this size
   double dimmest_level = 0.4;             ///< non_uniform: lamps that burn have a level between this and 1
-  double low_level = 0.05;                ///< low: of lamps and daylight
-  double bright_level = 4;                ///< bright: of lamps
+  double low_level = 0.05;                ///< low: of lamps indoors, and of the sky
+  double bright_level = 4;                ///< bright: of lamps and sun
   double window_luminance_cdpm2 = 10000;  ///< bright: of panes of glass
   double sky_luminance_cdpm2 =
-      4000;                     ///< overcast, in the zenith; where the world has a sun or no light at all
-  double night_level = 0.0001;  ///< dark: of daylight
+      4000;                      ///< overcast, in the zenith; where the world has a sun or no light at all
+  double night_level = 0.00002;  ///< dark: of sky and sun
   Switch headlight = Switch::automatic;  ///< automatic: in the dark preset
   double headlight_intensity_cd = 150;
   double headlight_cone_deg = 45;  ///< half the opening angle

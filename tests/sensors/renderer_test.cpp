@@ -252,6 +252,26 @@ TEST(Renderer, AWorldWithoutLightStandsUnderAnOvercastSky) {
   EXPECT_GT(closed.render(pinhole(4, 4, 400)).luminance[5], 0.05 * zenith);
 }
 
+TEST(Renderer, TheSkyGlowsAboutTheSun) {
+  World world = wall_world(0.5f);
+  const double lux = 20000, zenith = LightingConfig{}.sky_luminance_cdpm2;
+  world.lights = {{.name = "sun",
+                   .kind = Light::Kind::directional,
+                   .group = "sun",
+                   .direction_world = -Vec3::UnitZ(),
+                   .intensity = lux}};
+  Scene scene(std::move(world));
+  const auto seen_at = [&](double from_zenith_rad) {
+    const SE3 up = SE3::from_rpy({from_zenith_rad, 0, 0}, Vec3::Zero());  // at 0 the axis is the world's z
+    return scene.render(pinhole(4, 4, 4000), up).luminance[5];
+  };
+  const double half_rad = 2 * std::asin(std::sqrt(0.04 * (std::sqrt(2.0) - 1)) / 2);
+  EXPECT_NEAR(seen_at(0), zenith + 0.35 * lux, 20);
+  EXPECT_NEAR(seen_at(half_rad), zenith * (1 + 2 * std::cos(half_rad)) / 3 + 0.5 * 0.35 * lux, 20);
+  scene.renderer.set_light_levels({std::vector<float>(scene.renderer.light_groups().size(), 0.0f)});
+  EXPECT_EQ(seen_at(0), 0);
+}
+
 TEST(Renderer, AMovedObjectKeepsItsLight) {
   World world = wall_world(0.5f);
   world.lights = {point_light({0, 0, 0}, 100)};

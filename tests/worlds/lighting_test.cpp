@@ -89,6 +89,18 @@ TEST(Lighting, TheSkyShinesWithTheSunOrWhereThereIsNoLight) {
   EXPECT_EQ(lit(World{}, Preset::even).sky_luminance_cdpm2, LightingConfig{}.sky_luminance_cdpm2);
 }
 
+TEST(Lighting, UnderTheSkyLampsBurnAtNightAndTheSunSets) {
+  World world = corridor();
+  world.lights.push_back({.name = "sun", .kind = Light::Kind::directional, .group = "sun"});
+  const LightingConfig defaults;
+  for (const Preset preset : {Preset::low, Preset::dark})
+    for (const double l : lamps(world, lit(world, preset), "lamp")) EXPECT_EQ(l, 1);
+  EXPECT_EQ(lit(world, Preset::low).light_level.back(), 0);
+  EXPECT_EQ(lit(world, Preset::low).sky_luminance_cdpm2, defaults.low_level * defaults.sky_luminance_cdpm2);
+  EXPECT_EQ(lit(world, Preset::bright).light_level.back(), defaults.bright_level);
+  EXPECT_EQ(lit(world, Preset::bright).sky_luminance_cdpm2, defaults.sky_luminance_cdpm2);
+}
+
 TEST(Lighting, PanelsGlowAsBrightlyAsTheirLightsSay) {
   for (const World& world : {corridor(), plain_room()}) {
     for (const Light& light : world.lights) {
