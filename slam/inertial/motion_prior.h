@@ -64,7 +64,6 @@ struct InertialConfig {
 
 /// How visual odometry fares.
 struct VisualReport {
-  bool tracking = false;
   int restarts = 0;  ///< so far
   SE3 T_start_base;  ///< the prior's motions since the first fix, one after another: what it is worth alone
 };

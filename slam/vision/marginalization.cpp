@@ -65,7 +65,7 @@ Columns columns_of(const std::vector<WindowFactor>& factors) {
   Columns columns;
   for (const WindowFactor& factor : factors)
     for (const Variable v : factor.variables)
-      if (v.kind != VariableKind::inverse_depth) columns.variables.push_back(v);
+      if (v.kind != VariableKind::point) columns.variables.push_back(v);
   std::sort(columns.variables.begin(), columns.variables.end(), before);
   columns.variables.erase(std::unique(columns.variables.begin(), columns.variables.end()),
                           columns.variables.end());
@@ -78,19 +78,27 @@ Columns columns_of(const std::vector<WindowFactor>& factors) {
 
 // Rows of the normal equations of one feature: to itself, to the states, and its gradient.
 struct FeatureRows {
-  double h = 0, b = 0;
-  Eigen::VectorXd to_states;
+  Mat3 H = Mat3::Zero();
+  Vec3 b = Vec3::Zero();
+  Eigen::Matrix<double, 3, Eigen::Dynamic> to_states;
 };
 
+// What is unknown of the point itself (its depth if it was seen without parallax) ties no states together.
+Mat3 pseudo_inverse(const Mat3& H) {
+  const Eigen::SelfAdjointEigenSolver<Mat3> solver(H);
+  const Vec3 inverse = solver.eigenvalues().unaryExpr([](double l) { return l > kUnknown ? 1.0 / l : 0.0; });
+  return solver.eigenvectors() * inverse.asDiagonal() * solver.eigenvectors().transpose();
+}
+
 void eliminate(const FeatureRows& feature, NormalEquations& equations) {
-  if (feature.h < kUnknown) return;
+  const Mat3 inverse = pseudo_inverse(feature.H);
   std::vector<Eigen::Index> touched;
-  for (Eigen::Index i = 0; i < feature.to_states.size(); ++i)
-    if (feature.to_states[i] != 0) touched.push_back(i);
+  for (Eigen::Index i = 0; i < feature.to_states.cols(); ++i)
+    if (!feature.to_states.col(i).isZero(0)) touched.push_back(i);
   for (const Eigen::Index i : touched) {
-    const double share = feature.to_states[i] / feature.h;
-    for (const Eigen::Index j : touched) equations.H(j, i) -= share * feature.to_states[j];
-    equations.b[i] -= share * feature.b;
+    const Vec3 share = inverse * feature.to_states.col(i);
+    for (const Eigen::Index j : touched) equations.H(j, i) -= feature.to_states.col(j).dot(share);
+    equations.b[i] -= share.dot(feature.b);
   }
 }
 
@@ -115,22 +123,22 @@ NormalEquations normal_equations(const std::vector<WindowFactor>& factors, const
     const Slopes slopes = slopes_of(factor, at);
     const size_t count = factor.variables.size();
     FeatureRows* feature = nullptr;
-    size_t depth = count;
+    size_t point = count;
     for (size_t k = 0; k < count; ++k) {
-      if (factor.variables[k].kind != VariableKind::inverse_depth) continue;
+      if (factor.variables[k].kind != VariableKind::point) continue;
       feature = &features[factor.variables[k].index];
-      if (feature->to_states.size() == 0) feature->to_states = Eigen::VectorXd::Zero(columns.size);
-      feature->h += slopes.J[k].squaredNorm();
-      feature->b += slopes.J[k].col(0).dot(slopes.r);
-      depth = k;
+      if (feature->to_states.cols() == 0) feature->to_states.setZero(3, columns.size);
+      feature->H += slopes.J[k].transpose() * slopes.J[k];
+      feature->b += slopes.J[k].transpose() * slopes.r;
+      point = k;
     }
     for (size_t k = 0; k < count; ++k) {
-      if (k == depth) continue;
+      if (k == point) continue;
       const Eigen::Index a = columns.begin.at(factor.variables[k]), size = slopes.J[k].cols();
       equations.b.segment(a, size) += slopes.J[k].transpose() * slopes.r;
-      if (feature) feature->to_states.segment(a, size) += slopes.J[k].transpose() * slopes.J[depth].col(0);
+      if (feature) feature->to_states.middleCols(a, size) += slopes.J[point].transpose() * slopes.J[k];
       for (size_t l = 0; l < count; ++l) {
-        if (l == depth) continue;
+        if (l == point) continue;
         const Eigen::Index c = columns.begin.at(factor.variables[l]);
         equations.H.block(a, c, size, slopes.J[l].cols()) += slopes.J[k].transpose() * slopes.J[l];
       }

@@ -125,7 +125,7 @@ VioWindow with_states(const VioWindow& window, const std::vector<FramePath>& pat
     state.v_vio_mps = q_vio_first * (path.beta + s.head<3>() + t * s.tail<3>());
     state.bias = {};
   }
-  for (auto& [id, feature] : out.features) feature.inverse_depth_1pm.reset();
+  for (auto& [id, feature] : out.features) feature.point.reset();
   return out;
 }
 

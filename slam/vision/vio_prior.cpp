@@ -106,7 +106,7 @@ void VioPrior::add_scan(Time stamp, const Cloud& points_lidar, const SE3& T_odom
 }
 
 std::optional<VisualReport> VioPrior::visual_report() const {
-  return VisualReport{vio_.status() == VioStatus::tracking, vio_.restarts(), T_start_base_};
+  return VisualReport{vio_.restarts(), T_start_base_};
 }
 
 }  // namespace vsslam

@@ -2,7 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <set>
+#include <utility>
 
 #include "slam/vision/imu_factor.h"
 #include "slam/vision/reprojection_factor.h"
@@ -15,7 +15,7 @@ namespace {
 constexpr double kFocal_px = 460;
 
 bool usable(const WindowFeature& feature) {
-  return feature.inverse_depth_1pm && feature.seen.size() >= 2;
+  return feature.point && feature.seen.size() >= 2;
 }
 
 Variable pose(size_t frame) {
@@ -25,14 +25,13 @@ Variable motion(size_t frame) {
   return {VariableKind::motion, static_cast<int>(frame)};
 }
 
-Linearization linearization_of(const VioWindow& window, const std::vector<int64_t>& features) {
+// Of the frames; add_feature() adds the points.
+Linearization linearization_of(const VioWindow& window) {
   Linearization at;
   for (const WindowFrame& frame : window.frames) {
     at.frames.push_back(frame.id);
     at.now.frames.push_back(frame_blocks(frame.state));
   }
-  for (const int64_t id : features)
-    at.now.inverse_depths_1pm.push_back(*window.features.at(id).inverse_depth_1pm);
   at.first = at.now;
   for (const LinearPrior::Part& part : window.prior.parts) {
     const int size = part.kind == VariableKind::pose ? 7 : 9;
@@ -63,26 +62,27 @@ void add_interval(const VioWindow& window, size_t j, const VioModel& model, Wind
   problem.factors.push_back(std::move(factor));
 }
 
-void add_feature(const VioWindow& window, int index, const VioModel& model, WindowProblem& problem) {
-  const WindowFeature& feature = window.features.at(problem.features[static_cast<size_t>(index)]);
+void add_feature(const VioWindow& window, const WindowFeature& feature, const VioModel& model,
+                 WindowProblem& problem) {
   const Sighting& anchor = feature.seen.front();
-  const Variable rho{VariableKind::inverse_depth, index};
+  const Variable point{VariableKind::point, static_cast<int>(problem.at.now.points.size())};
+  problem.at.now.points.push_back(*feature.point);
+  problem.at.first.points.push_back(*feature.point);
   const Variable anchor_pose = pose(window.index_of(anchor.frame));
   const double weight = kFocal_px / model.config.feature_sigma_px, ratio = model.config.depth_sigma_ratio;
+  problem.factors.push_back({std::make_unique<AnchorRayFactor>(anchor.ray_camera, weight), true, {point}});
   bool has_depth = anchor.depth_m > 0;
   if (has_depth)
-    problem.factors.push_back({std::make_unique<AnchorDepthFactor>(anchor.depth_m, ratio), true, {rho}});
+    problem.factors.push_back({std::make_unique<AnchorDepthFactor>(anchor.depth_m, ratio), true, {point}});
   for (size_t k = 1; k < feature.seen.size(); ++k) {
     const Sighting& s = feature.seen[k];
-    const std::vector<Variable> variables{anchor_pose, pose(window.index_of(s.frame)), rho};
+    const std::vector<Variable> variables{anchor_pose, pose(window.index_of(s.frame)), point};
     problem.factors.push_back(
-        {std::make_unique<ReprojectionFactor>(model.T_imu_camera, anchor.ray_camera, s.ray_camera, weight),
-         true, variables});
+        {std::make_unique<ReprojectionFactor>(model.T_imu_camera, s.ray_camera, weight), true, variables});
     // One depth per feature: those of other frames come from the same points.
     if (has_depth || s.depth_m <= 0) continue;
     problem.factors.push_back(
-        {std::make_unique<DepthFactor>(model.T_imu_camera, anchor.ray_camera, s.depth_m, ratio), true,
-         variables});
+        {std::make_unique<DepthFactor>(model.T_imu_camera, s.depth_m, ratio), true, variables});
     has_depth = true;
   }
 }
@@ -98,7 +98,9 @@ std::vector<int64_t> features_to_leave(const VioWindow& window, const VioModel& 
     const WindowFeature& feature = window.features.at(id);
     const bool lives = feature.seen.back().frame == newest;
     all_alive += lives;
-    if (feature.seen.front().frame == oldest) (lives ? alive : ended).push_back(id);
+    if (feature.seen.front().frame != oldest) continue;
+    if (!lives) ended.push_back(id);
+    if (lives && feature.seen.size() > 2) alive.push_back(id);
   }
   std::stable_sort(alive.begin(), alive.end(), [&](int64_t a, int64_t b) {
     return window.features.at(a).seen.size() > window.features.at(b).seen.size();
@@ -109,18 +111,23 @@ std::vector<int64_t> features_to_leave(const VioWindow& window, const VioModel& 
   return ended;
 }
 
-// A track that has become part of the prior goes on as a new feature, anchored in its last sighting.
-void restart_track(VioWindow& window, int64_t id, const VioModel& model) {
-  WindowFeature& feature = window.features.at(id);
-  if (feature.seen.back().frame != window.newest().id) {
-    window.features.erase(id);
-    return;
+// Takes them out of the window. A track that lives on does so as a new feature, anchored in its last sighting, which
+// is not taken with the others.
+std::vector<WindowFeature> take_leaving(VioWindow& window, const VioModel& model) {
+  std::vector<WindowFeature> taken;
+  const int64_t newest = window.newest().id;
+  for (const int64_t id : features_to_leave(window, model)) {
+    WindowFeature& feature = window.features.at(id);
+    if (feature.seen.back().frame != newest) {
+      taken.push_back(std::move(feature));
+      window.features.erase(id);
+      continue;
+    }
+    WindowFeature anew{{feature.seen.back()}, window.point_in(newest, feature, model.T_imu_camera)};
+    feature.seen.pop_back();
+    taken.push_back(std::exchange(feature, std::move(anew)));
   }
-  const Sighting first = feature.seen.front(), last = feature.seen.back();
-  const Vec3 y = scaled_point_camera(window.T_vio_imu(first.frame), window.T_vio_imu(last.frame),
-                                     model.T_imu_camera, first.ray_camera, *feature.inverse_depth_1pm);
-  feature.seen = {last};
-  if (y.z() > 0.05) *feature.inverse_depth_1pm /= y.z();
+  return taken;
 }
 
 }  // namespace
@@ -149,22 +156,21 @@ std::vector<int64_t> usable_features(const VioWindow& window, int max_features) 
 
 WindowProblem make_problem(const VioWindow& window, const std::vector<int64_t>& features,
                            const VioModel& model) {
-  WindowProblem problem{features, linearization_of(window, features), {}};
+  WindowProblem problem{features, linearization_of(window), {}};
   add_prior(window, problem);
   for (size_t j = 1; j < window.frames.size(); ++j) add_interval(window, j, model, problem);
-  for (int i = 0; i < static_cast<int>(features.size()); ++i) add_feature(window, i, model, problem);
+  for (const int64_t id : features) add_feature(window, window.features.at(id), model, problem);
   return problem;
 }
 
 void leave_oldest(VioWindow& window, const VioModel& model) {
   const int64_t oldest = window.frames.front().id;
-  const std::vector<int64_t> leaving = features_to_leave(window, model);
-  WindowProblem problem{leaving, linearization_of(window, leaving), {}};
+  const std::vector<WindowFeature> leaving = take_leaving(window, model);
+  WindowProblem problem{{}, linearization_of(window), {}};
   add_prior(window, problem);
   add_interval(window, 1, model, problem);
-  for (int i = 0; i < static_cast<int>(leaving.size()); ++i) add_feature(window, i, model, problem);
+  for (const WindowFeature& feature : leaving) add_feature(window, feature, model, problem);
   LinearPrior prior = marginalize(problem.factors, problem.at, 0);
-  for (const int64_t id : leaving) restart_track(window, id, model);
   window.forget_sightings(oldest, model.T_imu_camera);
   window.prior = std::move(prior);
   window.frames.pop_front();
@@ -176,7 +182,7 @@ void leave_newest(VioWindow& window, const VioModel& model) {
   const auto& parts = window.prior.parts;
   if (std::any_of(parts.begin(), parts.end(),
                   [&](const LinearPrior::Part& part) { return part.frame == newest; })) {
-    WindowProblem problem{{}, linearization_of(window, {}), {}};
+    WindowProblem problem{{}, linearization_of(window), {}};
     add_prior(window, problem);
     window.prior = marginalize(problem.factors, problem.at, static_cast<int>(window.frames.size()) - 1);
   }

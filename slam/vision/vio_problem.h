@@ -17,7 +17,7 @@ VioModel make_model(const VioConfig& config, const RigCalibration& rig);
 std::vector<int64_t> usable_features(const VioWindow& window, int max_features);
 
 struct WindowProblem {
-  std::vector<int64_t> features;  ///< by index of their inverse depth
+  std::vector<int64_t> features;  ///< ids, by index of their points
   Linearization at;
   std::vector<WindowFactor> factors;
 };
@@ -30,7 +30,7 @@ struct VioSolution {
   int iterations = 0;
   bool usable = false;
 };
-/// Optimises all states and the depths of the usable features, and writes them into the window.
+/// Optimises all states and the points of the usable features, and writes them into the window.
 VioSolution solve(VioWindow& window, const VioModel& model, int max_iterations);
 
 /// Removes the oldest frame; the prior keeps what its measurements said of the others.

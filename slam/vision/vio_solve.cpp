@@ -40,9 +40,9 @@ VioSolution solve(VioWindow& window, const VioModel& model, int max_iterations) 
   ceres::Solver::Options options = solver_options(max_iterations, !ours.features.empty());
   auto* ordering = new ceres::ParameterBlockOrdering;
   options.linear_solver_ordering.reset(ordering);
-  for (double& rho : x.inverse_depths_1pm) {
-    problem.AddParameterBlock(&rho, 1);
-    ordering->AddElementToGroup(&rho, 0);
+  for (InversePoint& point : x.points) {
+    problem.AddParameterBlock(point.data(), 3);
+    ordering->AddElementToGroup(point.data(), 0);
   }
   for (FrameBlocks& frame : x.frames) {
     problem.AddParameterBlock(frame.pose.data(), 7, &manifold);
@@ -63,8 +63,7 @@ VioSolution solve(VioWindow& window, const VioModel& model, int max_iterations) 
                        summary.IsSolutionUsable()};
   if (!solution.usable) return solution;
   for (size_t i = 0; i < x.frames.size(); ++i) read_blocks(x.frames[i], window.frames[i].state);
-  for (size_t i = 0; i < ours.features.size(); ++i)
-    window.features.at(ours.features[i]).inverse_depth_1pm = x.inverse_depths_1pm[i];
+  for (size_t i = 0; i < ours.features.size(); ++i) window.features.at(ours.features[i]).point = x.points[i];
   return solution;
 }
 

@@ -70,17 +70,21 @@ void VioWindow::append(WindowFrame frame, const VisualFrame& seen) {
   frames.push_back(std::move(frame));
 }
 
+std::optional<InversePoint> VioWindow::point_in(int64_t frame, const WindowFeature& feature,
+                                                const SE3& T_imu_camera) const {
+  const Vec3 y = scaled_point_camera(T_vio_imu(feature.seen.front().frame), T_vio_imu(frame), T_imu_camera,
+                                     *feature.point);
+  if (y.z() < 0.05) return std::nullopt;
+  return InversePoint(y.x(), y.y(), feature.point->z()) / y.z();
+}
+
 void VioWindow::forget_sightings(int64_t frame, const SE3& T_imu_camera) {
   for (auto it = features.begin(); it != features.end();) {
     WindowFeature& feature = it->second;
     auto sighting = std::find_if(feature.seen.begin(), feature.seen.end(),
                                  [&](const Sighting& s) { return s.frame == frame; });
-    if (sighting == feature.seen.begin() && feature.seen.size() > 1 && feature.inverse_depth_1pm) {
-      const Vec3 y = scaled_point_camera(T_vio_imu(frame), T_vio_imu(feature.seen[1].frame), T_imu_camera,
-                                         sighting->ray_camera, *feature.inverse_depth_1pm);
-      *feature.inverse_depth_1pm /= y.z();
-      if (y.z() < 0.05) feature.inverse_depth_1pm.reset();
-    }
+    if (sighting == feature.seen.begin() && feature.seen.size() > 1 && feature.point)
+      feature.point = point_in(feature.seen[1].frame, feature, T_imu_camera);
     if (sighting != feature.seen.end()) feature.seen.erase(sighting);
     it = feature.seen.empty() ? features.erase(it) : std::next(it);
   }
@@ -110,22 +114,20 @@ NewestView view_newest(const VioWindow& window, const SE3& T_imu_camera) {
 void triangulate(VioWindow& window, const SE3& T_imu_camera, const VioConfig& config) {
   const double weight = kFocal_px / config.feature_sigma_px;
   for (auto& [id, feature] : window.features) {
-    if (feature.inverse_depth_1pm || feature.seen.empty()) continue;
-    feature.inverse_depth_1pm = lidar_inverse_depth(window, feature, T_imu_camera);
-    if (!feature.inverse_depth_1pm && feature.seen.size() >= 2)
-      feature.inverse_depth_1pm = triangulated(window, feature, T_imu_camera, weight);
+    if (feature.point || feature.seen.empty()) continue;
+    std::optional<double> rho = lidar_inverse_depth(window, feature, T_imu_camera);
+    if (!rho && feature.seen.size() >= 2) rho = triangulated(window, feature, T_imu_camera, weight);
+    const Vec2& ray = feature.seen.front().ray_camera;
+    if (rho) feature.point = InversePoint(ray.x(), ray.y(), *rho);
   }
 }
 
 double mean_error_px(const VioWindow& window, const WindowFeature& feature, const SE3& T_imu_camera) {
   const Sighting& anchor = feature.seen.front();
-  const SE3& T_anchor = window.T_vio_imu(anchor.frame);
-  double sum_px = 0;
+  double sum_px = kFocal_px * (feature.point->head<2>() - anchor.ray_camera).norm();
   for (size_t k = 1; k < feature.seen.size(); ++k) {
-    const Sighting& s = feature.seen[k];
-    const Vec3 y = scaled_point_camera(T_anchor, window.T_vio_imu(s.frame), T_imu_camera, anchor.ray_camera,
-                                       *feature.inverse_depth_1pm);
-    sum_px += y.z() > 0.05 ? kFocal_px * (y.hnormalized() - s.ray_camera).norm() : kFocal_px;
+    const std::optional<InversePoint> point = window.point_in(feature.seen[k].frame, feature, T_imu_camera);
+    sum_px += kFocal_px * (point ? (point->head<2>() - feature.seen[k].ray_camera).norm() : 1.0);
   }
   return feature.seen.size() < 2 ? 0 : sum_px / static_cast<double>(feature.seen.size() - 1);
 }
@@ -135,9 +137,8 @@ int remove_outliers(VioWindow& window, const SE3& T_imu_camera, double limit_px)
   for (auto it = window.features.begin(); it != window.features.end();) {
     const WindowFeature& feature = it->second;
     const bool wrong =
-        feature.inverse_depth_1pm &&
-        (*feature.inverse_depth_1pm < kBehind_1pm || *feature.inverse_depth_1pm > kNearest_1pm ||
-         !(mean_error_px(window, feature, T_imu_camera) < limit_px));
+        feature.point && (feature.point->z() < kBehind_1pm || feature.point->z() > kNearest_1pm ||
+                          !(mean_error_px(window, feature, T_imu_camera) < limit_px));
     removed += wrong;
     it = wrong ? window.features.erase(it) : std::next(it);
   }

@@ -31,8 +31,8 @@ struct Sighting {
 };
 
 struct WindowFeature {
-  std::vector<Sighting> seen;               ///< in order of frame; the first is the anchor
-  std::optional<double> inverse_depth_1pm;  ///< in the camera of the anchor; about 0 if far
+  std::vector<Sighting> seen;         ///< in order of frame; the first is the anchor
+  std::optional<InversePoint> point;  ///< in the camera of the anchor
 };
 
 struct VioWindow {
@@ -46,6 +46,9 @@ struct VioWindow {
   const SE3& T_vio_imu(int64_t frame) const { return frames[index_of(frame)].state.T_vio_imu; }
 
   void append(WindowFrame frame, const VisualFrame& seen);
+  /// The point of a feature in the camera of another frame; nullopt if it is behind it or too near.
+  std::optional<InversePoint> point_in(int64_t frame, const WindowFeature& feature,
+                                       const SE3& T_imu_camera) const;
   /// Forgets what a frame saw; a feature anchored there is anchored where it was seen next.
   void forget_sightings(int64_t frame, const SE3& T_imu_camera);
 };
@@ -60,7 +63,8 @@ NewestView view_newest(const VioWindow& window, const SE3& T_imu_camera);
 /// Depth of the features that have none and whose rays, or LiDAR depths, give one.
 void triangulate(VioWindow& window, const SE3& T_imu_camera, const VioConfig& config);
 
-/// Mean distance in pixels (focal length 460) between where a feature was seen and where it should have been.
+/// Distance in pixels (focal length 460) between where a feature was seen and where its point is, mean over one
+/// sighting less than there are: the anchor places the point.
 double mean_error_px(const VioWindow& window, const WindowFeature& feature, const SE3& T_imu_camera);
 /// Removes features that do not fit, or lie behind the camera. Returns how many.
 int remove_outliers(VioWindow& window, const SE3& T_imu_camera, double limit_px);

@@ -25,7 +25,7 @@ double* WindowValues::data(Variable v) {
   const auto i = static_cast<size_t>(v.index);
   if (v.kind == VariableKind::pose) return frames[i].pose.data();
   if (v.kind == VariableKind::motion) return frames[i].motion.data();
-  return &inverse_depths_1pm[i];
+  return points[i].data();
 }
 
 Eigen::VectorXd difference(VariableKind kind, const double* x, const double* at) {

@@ -35,9 +35,12 @@ void put_motion_jacobian(const Eigen::MatrixBase<Derived>& J, double* out) {
   Eigen::Map<Eigen::Matrix<double, kRows, 9, Eigen::RowMajor>>{out} = J;
 }
 
-enum class VariableKind { pose, motion, inverse_depth };
+/// A point in a camera: [x / z, y / z, 1 / z]. The last is 0 at infinity.
+using InversePoint = Vec3;
+
+enum class VariableKind { pose, motion, point };
 constexpr int tangent_size(VariableKind kind) {
-  return kind == VariableKind::pose ? 6 : kind == VariableKind::motion ? 9 : 1;
+  return kind == VariableKind::pose ? 6 : kind == VariableKind::motion ? 9 : 3;
 }
 
 /// A frame by its place in the window, or a feature by its place among those that are optimised.
@@ -59,7 +62,7 @@ void read_blocks(const FrameBlocks& blocks, VioState& state);
 /// Ceres sorts blocks by their addresses, so each kind is one array: the order is that of the window.
 struct WindowValues {
   std::vector<FrameBlocks> frames;
-  std::vector<double> inverse_depths_1pm;
+  std::vector<InversePoint> points;  ///< of features, each in the camera of its anchor
 
   double* data(Variable v);
   const double* data(Variable v) const { return const_cast<WindowValues*>(this)->data(v); }

@@ -30,8 +30,11 @@ Block motion(const Vec3& v, const Vec3& gyro, const Vec3& accel) {
   Eigen::Map<Eigen::Matrix<double, 9, 1>>{block.x.data()} << v, gyro, accel;
   return block;
 }
-Block inverse_depth(double rho) {
-  return {VariableKind::inverse_depth, {rho}};
+Block inverse_point(const Vec2& ray, double rho) {
+  return {VariableKind::point, {ray.x(), ray.y(), rho}};
+}
+Block inverse_point(const Vec3& point) {
+  return inverse_point(point.hnormalized(), 1 / point.z());
 }
 
 int size_of(const Block& block) {
@@ -150,8 +153,8 @@ const SE3 kImuCamera = SE3(Quat(0.5, -0.5, 0.5, -0.5) * so3_exp({0.05, 0.02, -0.
 
 TEST(ReprojectionFactor, SlopesAgreeWithDifferences) {
   for (const double rho : {0.3, 0.02, 0.0, -0.01}) {
-    const ReprojectionFactor factor(kImuCamera, {0.2, -0.1}, {0.25, -0.05}, 460 / 1.5);
-    expect_slopes(factor, {pose(kPoseA), pose(kPoseB), inverse_depth(rho)}, 1e-6, 1e-6);
+    const ReprojectionFactor factor(kImuCamera, {0.25, -0.05}, 460 / 1.5);
+    expect_slopes(factor, {pose(kPoseA), pose(kPoseB), inverse_point({0.2, -0.1}, rho)}, 1e-6, 1e-6);
   }
 }
 
@@ -159,21 +162,20 @@ TEST(ReprojectionFactor, SeesAPointWhereItIs) {
   const SE3 T_vio_a = kPoseA * kImuCamera, T_vio_b = kPoseB * kImuCamera;
   const Vec3 point_a(0.6, -0.3, 3.0), point_b = T_vio_b.inverse() * (T_vio_a * point_a);
   ASSERT_GT(point_b.z(), 1);
-  const Vec2 ray_a = point_a.hnormalized(), ray_b = point_b.hnormalized();
-  const ReprojectionFactor exact(kImuCamera, ray_a, ray_b, 460);
-  EXPECT_LT(residuals(exact, {pose(kPoseA), pose(kPoseB), inverse_depth(1 / point_a.z())}).norm(), 1e-9);
-  const ReprojectionFactor two_pixels(kImuCamera, ray_a, ray_b + Vec2(2.0 / 460, 0), 460);
-  EXPECT_NEAR(residuals(two_pixels, {pose(kPoseA), pose(kPoseB), inverse_depth(1 / point_a.z())}).norm(), 2,
-              1e-9);
-  const DepthFactor depth(kImuCamera, ray_a, point_b.z(), 0.02);
-  EXPECT_NEAR(residuals(depth, {pose(kPoseA), pose(kPoseB), inverse_depth(1 / point_a.z())})[0], 0, 1e-9);
+  const Vec2 ray_b = point_b.hnormalized();
+  const ReprojectionFactor exact(kImuCamera, ray_b, 460);
+  EXPECT_LT(residuals(exact, {pose(kPoseA), pose(kPoseB), inverse_point(point_a)}).norm(), 1e-9);
+  const ReprojectionFactor two_pixels(kImuCamera, ray_b + Vec2(2.0 / 460, 0), 460);
+  EXPECT_NEAR(residuals(two_pixels, {pose(kPoseA), pose(kPoseB), inverse_point(point_a)}).norm(), 2, 1e-9);
+  const DepthFactor depth(kImuCamera, point_b.z(), 0.02);
+  EXPECT_NEAR(residuals(depth, {pose(kPoseA), pose(kPoseB), inverse_point(point_a)})[0], 0, 1e-9);
 }
 
 TEST(ReprojectionFactor, BehindTheCameraItPullsNowhere) {
   const SE3 turned = kPoseA * SE3::from_rpy({0, 0, 3}, Vec3::Zero());
-  const ReprojectionFactor factor(kImuCamera, {0, 0}, {0, 0}, 460);
-  const Block a = pose(kPoseA), b = pose(turned), rho = inverse_depth(0.2);
-  const double* x[] = {a.x.data(), b.x.data(), rho.x.data()};
+  const ReprojectionFactor factor(kImuCamera, {0, 0}, 460);
+  const Block a = pose(kPoseA), b = pose(turned), point = inverse_point({0, 0}, 0.2);
+  const double* x[] = {a.x.data(), b.x.data(), point.x.data()};
   Eigen::Vector2d r;
   RowMajor J(2, 7);
   double* out[] = {J.data(), nullptr, nullptr};
@@ -182,10 +184,19 @@ TEST(ReprojectionFactor, BehindTheCameraItPullsNowhere) {
   EXPECT_EQ(J.norm(), 0);
 }
 
+TEST(AnchorRayFactor, IsTheReprojectionIntoTheAnchorItself) {
+  const Block point = inverse_point({0.2, -0.1}, 0.3);
+  const AnchorRayFactor factor({0.25, -0.05}, 460 / 1.5);
+  expect_slopes(factor, {point}, 1e-6, 1e-7);
+  const ReprojectionFactor twin(kImuCamera, {0.25, -0.05}, 460 / 1.5);
+  const Eigen::VectorXd r = residuals(twin, {pose(kPoseA), pose(kPoseA), point});
+  EXPECT_LT((residuals(factor, {point}) - r).norm(), 1e-9);
+}
+
 TEST(DepthFactor, SlopesAgreeWithDifferences) {
-  expect_slopes(DepthFactor(kImuCamera, {0.2, -0.1}, 3.5, 0.02),
-                {pose(kPoseA), pose(kPoseB), inverse_depth(0.3)}, 1e-6, 1e-7);
-  expect_slopes(AnchorDepthFactor(3.5, 0.02), {inverse_depth(0.3)}, 1e-6, 1e-7);
+  const Block point = inverse_point({0.2, -0.1}, 0.3);
+  expect_slopes(DepthFactor(kImuCamera, 3.5, 0.02), {pose(kPoseA), pose(kPoseB), point}, 1e-6, 1e-7);
+  expect_slopes(AnchorDepthFactor(3.5, 0.02), {point}, 1e-6, 1e-7);
 }
 
 TEST(PriorFactor, SlopesAgreeWithDifferences) {

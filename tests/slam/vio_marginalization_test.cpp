@@ -41,8 +41,8 @@ class LinearFactor final : public ceres::CostFunction {
 Variable motion(int frame) {
   return {VariableKind::motion, frame};
 }
-Variable depth(int index) {
-  return {VariableKind::inverse_depth, index};
+Variable point(int index) {
+  return {VariableKind::point, index};
 }
 
 Linearization at_zero(int frames, int features) {
@@ -50,7 +50,7 @@ Linearization at_zero(int frames, int features) {
   for (int i = 0; i < frames; ++i) at.frames.push_back(100 + i);
   at.now.frames.resize(static_cast<size_t>(frames));
   for (FrameBlocks& blocks : at.now.frames) blocks = frame_blocks(VioState{});
-  at.now.inverse_depths_1pm.assign(static_cast<size_t>(features), 0.0);
+  at.now.points.assign(static_cast<size_t>(features), Vec3::Zero());
   at.first = at.now;
   return at;
 }
@@ -99,12 +99,12 @@ TEST(Marginalization, FeaturesAreEliminatedExactly) {
   for (int f = 0; f < 3; ++f)
     for (int i = 0; i < 3; ++i)
       factors.push_back(
-          {std::make_unique<LinearFactor>(2, std::vector<int>{9, 1}, static_cast<uint64_t>(50 + 10 * f + i)),
+          {std::make_unique<LinearFactor>(2, std::vector<int>{9, 3}, static_cast<uint64_t>(50 + 10 * f + i)),
            false,
-           {motion(i), depth(f)}});
+           {motion(i), point(f)}});
   const NormalEquations reduced = normal_equations(factors, at_zero(3, 3));
-  // All in one: 27 + 3 unknowns, by rows.
-  Eigen::MatrixXd J = Eigen::MatrixXd::Zero(24 + 18, 30);
+  // All in one: 27 + 9 unknowns, by rows.
+  Eigen::MatrixXd J = Eigen::MatrixXd::Zero(24 + 18, 36);
   Eigen::VectorXd r(J.rows());
   Eigen::Index row = 0;
   const Linearization at = at_zero(3, 3);
@@ -117,8 +117,8 @@ TEST(Marginalization, FeaturesAreEliminatedExactly) {
     factor.cost->Evaluate(x, r.segment(row, rows).data(), out);
     J.block(row, 9 * factor.variables[0].index, rows, 9) = a;
     const Variable second = factor.variables[1];
-    J.block(row, second.kind == VariableKind::motion ? 9 * second.index : 27 + second.index, rows, b.cols()) =
-        b;
+    J.block(row, second.kind == VariableKind::motion ? 9 * second.index : 27 + 3 * second.index, rows,
+            b.cols()) = b;
     row += rows;
   }
   const Eigen::VectorXd whole = -(J.transpose() * J).ldlt().solve(J.transpose() * r);
@@ -140,7 +140,8 @@ TEST(Marginalization, UnknownDirectionsStayUnknown) {
 
 using namespace vio_world;
 
-// A ride that begins in motion with an aid as uncertain as the settings say.
+// A ride that begins in motion with an aid as uncertain as the settings say. Its velocity is known well: what follows
+// compares with first-order statistics, and a scale that is 10 % off at first is beyond first order.
 struct AidedRide {
   Drive drive;
   RideOptions options;
@@ -151,8 +152,9 @@ struct AidedRide {
     const auto normals = [random](uint64_t k) {
       return Vec3(random.normal(k), random.normal(k + 1), random.normal(k + 2));
     };
-    options.config.feature_sigma_px = 1.5;
+    options.config.feature_sigma_px = 0.5;
     options.config.max_features = 60;
+    options.config.start.aid_velocity_sigma_mps = 0.02;
     const VioStartConfig& start = options.config.start;
     options.noise.imu = true;
     options.noise.seed = seed;
@@ -182,10 +184,11 @@ struct AidedRide {
   }
 };
 
-// Not exactly: the window forgets the oldest sightings of tracks that live on, and the batch keeps them.
+// Not exactly: the window forgets the oldest sightings of tracks that live on, and the batch keeps them. Of two
+// consistent estimates, one of which knows all that the other knows, the difference has the covariance P_less - P_more.
 TEST(Marginalization, SlidingWindowAgreesWithBatch) {
   VioState states[2];
-  Eigen::Matrix<double, 15, 15> covariance;
+  Eigen::Matrix<double, 15, 15> covariances[2];
   for (const bool batch : {true, false}) {
     AidedRide ride_of(11, 4.0);
     ride_of.options.config.window = batch ? 60 : 8;
@@ -194,7 +197,7 @@ TEST(Marginalization, SlidingWindowAgreesWithBatch) {
     ride_of.options.after_frame = [&](const VisualInertialOdometry& vio, Time now) {
       if (vio.status() != VioStatus::tracking || now.seconds() < 3.9) return;
       states[batch] = vio.state();
-      if (!batch) covariance = vio.covariance();
+      covariances[batch] = vio.covariance();
     };
     ride(ride_of.drive, ride_of.options);
   }
@@ -203,37 +206,42 @@ TEST(Marginalization, SlidingWindowAgreesWithBatch) {
   e << (states[1].T_vio_imu.inverse() * states[0].T_vio_imu).log(), states[0].v_vio_mps - states[1].v_vio_mps,
       states[0].bias.gyro_radps - states[1].bias.gyro_radps,
       states[0].bias.accel_mps2 - states[1].bias.accel_mps2;
-  for (int k = 0; k < 15; ++k) EXPECT_LT(std::abs(e[k]), 1.5 * std::sqrt(covariance(k, k))) << k;
+  for (int k = 0; k < 15; ++k) {
+    const double forgotten = covariances[0](k, k) - covariances[1](k, k);
+    EXPECT_GT(forgotten, 0) << k;
+    EXPECT_LT(std::abs(e[k]), 3 * std::sqrt(forgotten)) << k;
+  }
 }
 
 // Normalised estimation error squared of pose and velocity (9 degrees of freedom), after several times the window's
-// length. A consistent estimator has 9 on average; over 8 runs 95 % lie within 6.3 and 12.2. Ours takes the ray of
-// the anchor as exact, an error that all sightings of a feature share; the default sigma of 1.5 px stands for three
-// times the noise of a good tracker because of that. With it, twice the upper bound is what first-order models of a
-// start in motion leave.
+// length, by the camera alone and with depths of the LiDAR. A consistent estimator has 9 on average; over 8 runs 95 %
+// lie between 6.3 and 12.2. Below is allowed: the robust loss also discounts what fits.
 TEST(Marginalization, EstimateIsConsistent) {
-  double sum = 0;
   constexpr int kRuns = 8;
-  for (uint64_t seed = 0; seed < kRuns; ++seed) {
-    AidedRide ride_of(seed, 6.0);
-    ride_of.options.config.window = 6;
-    Eigen::Matrix<double, 15, 15> covariance;
-    VioState last;
-    ride_of.options.after_frame = [&](const VisualInertialOdometry& vio, Time now) {
-      if (vio.status() != VioStatus::tracking || now.seconds() < 5.9) return;
-      covariance = vio.covariance();
-      last = vio.state();
-    };
-    const Ride ridden = ride(ride_of.drive, ride_of.options);
-    EXPECT_EQ(ridden.restarts, 0);
-    const VioState truth = true_state(ride_of.drive, rig(), last.stamp, {});
-    Eigen::Matrix<double, 9, 1> e;
-    e << (last.T_vio_imu.inverse() * truth.T_vio_imu).log(), truth.v_vio_mps - last.v_vio_mps;
-    const double nees = e.dot(covariance.topLeftCorner<9, 9>().ldlt().solve(e));
-    sum += nees;
+  for (const double depth_share : {0.0, 0.6}) {
+    double sum = 0;
+    for (uint64_t seed = 0; seed < kRuns; ++seed) {
+      AidedRide ride_of(seed, 6.0);
+      ride_of.options.config.window = 6;
+      ride_of.options.depth_share = depth_share;
+      ride_of.options.noise.depth_ratio = ride_of.options.config.depth_sigma_ratio;
+      Eigen::Matrix<double, 15, 15> covariance;
+      VioState last;
+      ride_of.options.after_frame = [&](const VisualInertialOdometry& vio, Time now) {
+        if (vio.status() != VioStatus::tracking || now.seconds() < 5.9) return;
+        covariance = vio.covariance();
+        last = vio.state();
+      };
+      const Ride ridden = ride(ride_of.drive, ride_of.options);
+      EXPECT_EQ(ridden.restarts, 0);
+      const VioState truth = true_state(ride_of.drive, rig(), last.stamp, {});
+      Eigen::Matrix<double, 9, 1> e;
+      e << (last.T_vio_imu.inverse() * truth.T_vio_imu).log(), truth.v_vio_mps - last.v_vio_mps;
+      sum += e.dot(covariance.topLeftCorner<9, 9>().ldlt().solve(e));
+    }
+    EXPECT_GT(sum / kRuns, 4.0) << depth_share;
+    EXPECT_LT(sum / kRuns, 12.2) << depth_share;
   }
-  EXPECT_GT(sum / kRuns, 4.0);
-  EXPECT_LT(sum / kRuns, 24.0);
 }
 
 }  // namespace
