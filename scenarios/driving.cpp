@@ -21,20 +21,11 @@ Driving::Driving(const Scenario& scenario, const World& world, StageClock* clock
                                slip.left_friction, slip.right_friction);
 }
 
-// Those that are solid; what the sensors see is moved by the rig.
-void Driving::place_objects() {
-  placed_.resize(moving_.objects().size());
-  for (size_t i = 0; i < placed_.size(); ++i) {
-    const ObjectState state = moving_.state(moving_.objects()[i], until_);
-    if (placed_[i] == state) continue;
-    placed_[i] = state;
-    simulation_.set_object_pose(moving_.objects()[i], state.T_world_object, state.present);
-  }
-}
-
 Motion Driving::next(const std::optional<Belief>& belief, Time keep_from) {
   StageTimer timer(clock_, "simulate");
-  place_objects();
+  // Those that are solid; what the sensors see is moved by the rig.
+  for (const auto& [object, state] : moving_.changes(until_, placed_))
+    simulation_.set_object_pose(object, state.T_world_object, state.present);
   if (belief) simulation_.set_believed_pose(belief->stamp, belief->T_world_base);
   until_ = until_ + kStretch;
   Time ahead = until_;

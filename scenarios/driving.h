@@ -30,13 +30,11 @@ class Driving {
   std::string outcome_text() const { return simulation_.outcome_text(); }
 
  private:
-  void place_objects();
-
   const Scenario& scenario_;
   StageClock* clock_;
   Simulation simulation_;
   MovingObjects moving_;
-  std::vector<std::optional<ObjectState>> placed_;  // of moving_, as the dynamics have them
+  std::vector<ObjectState> placed_;  // of moving_, as the dynamics have them
   Time until_{0};
   bool ended_ = false;
 };

@@ -51,4 +51,17 @@ ObjectState MovingObjects::state(int object, Time stamp) const {
   return state;
 }
 
+std::vector<std::pair<int, ObjectState>> MovingObjects::changes(Time stamp,
+                                                                std::vector<ObjectState>& placed) const {
+  std::vector<std::pair<int, ObjectState>> changed;
+  for (size_t i = 0; i < indices_.size(); ++i) {
+    const ObjectState now = state(indices_[i], stamp);
+    if (i < placed.size() && now == placed[i]) continue;
+    placed.resize(std::max(placed.size(), i + 1));
+    placed[i] = now;
+    changed.emplace_back(indices_[i], now);
+  }
+  return changed;
+}
+
 }  // namespace vsslam

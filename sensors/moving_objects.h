@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <utility>
 #include <vector>
 
 #include "core/time.h"
@@ -26,6 +27,9 @@ class MovingObjects {
   /// Objects with events: index into World::objects.
   const std::vector<int>& objects() const { return indices_; }
   ObjectState state(int object, Time stamp) const;
+  /// The objects that are not as `placed` says, in order of objects(); `placed` then says it. It begins empty: all
+  /// objects are new.
+  std::vector<std::pair<int, ObjectState>> changes(Time stamp, std::vector<ObjectState>& placed) const;
 
  private:
   const World& world_;

@@ -141,17 +141,10 @@ std::optional<CameraMeasurement> Rig::Impl::measure_camera(Time until, const Tra
 }
 
 void Rig::Impl::place_objects(Time stamp) {
-  const std::vector<int>& objects = moving.objects();
-  bool changed = false;
-  for (size_t i = 0; i < objects.size(); ++i) {
-    const ObjectState state = moving.state(objects[i], stamp);
-    if (i < placed.size() && state == placed[i]) continue;
-    placed.resize(std::max(placed.size(), i + 1));
-    placed[i] = state;
-    raycaster.set_object_pose(objects[i], state.T_world_object, state.present);
-    changed = true;
-  }
-  if (changed) raycaster.commit();
+  const auto changes = moving.changes(stamp, placed);
+  for (const auto& [object, state] : changes)
+    raycaster.set_object_pose(object, state.T_world_object, state.present);
+  if (!changes.empty()) raycaster.commit();
 }
 
 }  // namespace vsslam
