@@ -97,7 +97,8 @@ bool SeedRun::may_locate() const {
 }
 
 bool SeedRun::all_located() const {
-  return driving_->ended() && !driving_busy_ && motions_.empty() && !sensing_busy_ && chunks_.empty() &&
+  // While a step of the driving runs, what it changes is not to be read.
+  return !driving_busy_ && driving_->ended() && motions_.empty() && !sensing_busy_ && chunks_.empty() &&
          !odometry_busy_;
 }
 
