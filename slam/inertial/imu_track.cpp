@@ -12,10 +12,9 @@ double median_of_three(double a, double b, double c) {
 }
 
 void replace_spike(const Vec3& before, Vec3& middle, const Vec3& after, double limit) {
-  for (int k = 0; k < 3; ++k) {
-    const double median = median_of_three(before[k], middle[k], after[k]);
-    if (std::abs(middle[k] - median) > limit) middle[k] = median;
-  }
+  Vec3 median;
+  for (int k = 0; k < 3; ++k) median[k] = median_of_three(before[k], middle[k], after[k]);
+  if ((middle - median).norm() > limit) middle = median;
 }
 
 }  // namespace
@@ -27,8 +26,24 @@ ImuTrackLimits track_limits(const InertialConfig& config) {
 void ImuTrack::add(const ImuSample& sample) {
   if (!sample.gyro_radps.allFinite() || !sample.accel_mps2.allFinite()) return;
   if (!samples_.empty() && sample.stamp <= samples_.back().stamp) return;
+  if (doubted_) std::swap(samples_.back(), *doubted_);
+  doubted_.reset();
   samples_.push_back(sample);
   if (samples_.size() >= 3) remove_spike(samples_.size() - 2);
+  doubt_newest();
+}
+
+// Whether it is a spike or the first of many, the next sample will tell.
+void ImuTrack::doubt_newest() {
+  if (samples_.size() < 2) return;
+  ImuSample& newest = samples_.back();
+  const ImuSample& before = samples_[samples_.size() - 2];
+  const bool far = (newest.gyro_radps - before.gyro_radps).norm() > limits_.spike_gyro_radps ||
+                   (newest.accel_mps2 - before.accel_mps2).norm() > limits_.spike_accel_mps2;
+  if (!far || seconds_between(before.stamp, newest.stamp) > limits_.max_gap_s) return;
+  doubted_ = newest;
+  newest.gyro_radps = before.gyro_radps;
+  newest.accel_mps2 = before.accel_mps2;
 }
 
 void ImuTrack::remove_spike(size_t middle) {

@@ -23,10 +23,14 @@ class ImuTrack {
  public:
   explicit ImuTrack(const ImuTrackLimits& limits) : limits_(limits) {}
 
-  /// Ignores samples that are not finite or not newer than the last. A single sample far from both of its
-  /// neighbours is replaced by the median of the three.
+  /// Ignores samples that are not finite or not newer than the last. A single sample far from the median of itself
+  /// and its neighbours (taken for each axis) is replaced by it. Until the next sample is here to tell, one far from
+  /// the last has the values of the last.
   void add(const ImuSample& sample);
-  void clear() { samples_.clear(); }
+  void clear() {
+    samples_.clear();
+    doubted_.reset();
+  }
   /// Keeps the last sample at or before `stamp`.
   void forget_before(Time stamp);
 
@@ -37,8 +41,10 @@ class ImuTrack {
 
  private:
   void remove_spike(size_t middle);
+  void doubt_newest();
   ImuTrackLimits limits_;
   std::deque<ImuSample> samples_;
+  std::optional<ImuSample> doubted_;  ///< the newest sample as it came, if it does not stand so in samples_
 };
 
 }  // namespace vsslam

@@ -53,7 +53,7 @@ enum class PriorKind { vio, wheel_imu, imu, wheel, constant_velocity };
 struct InertialConfig {
   double rest_gyro_radps = 0.02;  ///< IMU counts as at rest below this spread of the gyroscope ...
   double rest_accel_mps2 = 0.15;  ///< ... and of the accelerometer
-  double spike_gyro_radps = 0.5;  ///< a sample this far from both neighbours is replaced by their median
+  double spike_gyro_radps = 0.5;  ///< a single sample this far from its neighbours is replaced by the median
   double spike_accel_mps2 = 20.0;
   double max_gap_s = 0.05;                 ///< samples further apart are a dropout
   double lidar_rotation_sigma_rad = 5e-4;  ///< of a registered scan, for the online estimate of the bias

@@ -31,7 +31,7 @@ constexpr double kLongestMemory_s = 5;  // of IMU samples, when no frames come
 struct VisualInertialOdometry::Impl {
   VioModel model;
   StageClock* clock;
-  ImuTrack imu{ImuTrackLimits{}};
+  ImuTrack imu;
   RestDetector rest;
   MotionStart motion_start;
   std::optional<VioAid> aid;
@@ -41,8 +41,13 @@ struct VisualInertialOdometry::Impl {
   std::optional<Time> last_frame;  // by the IMU's clock
   Time last_seen;                  // the last frame that was not blind
 
-  Impl(const VioConfig& config, const RigCalibration& rig, StageClock* stage_clock)
-      : model(make_model(config, rig)), clock(stage_clock), rest(config.rest), motion_start(model) {}
+  Impl(const VioConfig& config, const RigCalibration& rig, const ImuTrackLimits& limits,
+       StageClock* stage_clock)
+      : model(make_model(config, rig)),
+        clock(stage_clock),
+        imu(limits),
+        rest(config.rest),
+        motion_start(model) {}
 
   void add(const ImuSample& sample);
   std::optional<VioState> add(const VisualFrame& raw);
@@ -141,8 +146,10 @@ bool VisualInertialOdometry::Impl::track(const VisualFrame& frame, const std::op
 // `span` leads from the newest frame of the window to `next`.
 void VisualInertialOdometry::Impl::make_room(WindowFrame& next, ImuSpan span) {
   WindowFrame& last = window.newest();
-  // Its IMU ended with the sample at hand; by now there are those on both sides.
-  if (!last.span.empty()) last.span.back() = span.front();
+  // Its IMU ended with the samples at hand; by now those after them tell where they were wrong.
+  if (!last.span.empty())
+    if (auto again = cut_span(imu, last.span.front().stamp, last.span.back().stamp, kMaxImuGap_s))
+      last.span = std::move(*again);
   // Rest is an interval of its own: the frames in which it begins and ends stay.
   if (last.rest.has_value() != next.rest.has_value()) last.key = true;
   const StageTimer timer(clock, "vio_marginalize");
@@ -257,8 +264,8 @@ SE3 pose_at(const std::vector<StampedPose>& path, Time stamp) {
 }  // namespace
 
 VisualInertialOdometry::VisualInertialOdometry(const VioConfig& config, const RigCalibration& rig,
-                                               StageClock* clock)
-    : impl_(std::make_unique<Impl>(config, rig, clock)) {}
+                                               const ImuTrackLimits& limits, StageClock* clock)
+    : impl_(std::make_unique<Impl>(config, rig, limits, clock)) {}
 VisualInertialOdometry::~VisualInertialOdometry() = default;
 
 void VisualInertialOdometry::add(const ImuSample& sample) {

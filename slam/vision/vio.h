@@ -10,6 +10,7 @@
 #include "core/config.h"
 #include "core/samples.h"
 #include "core/stage_clock.h"
+#include "slam/inertial/imu_track.h"
 #include "slam/inertial/preintegration.h"
 #include "slam/vision/visual_frame.h"
 
@@ -92,7 +93,8 @@ enum class VioStatus { starting, tracking };
 /// Deterministic: the same samples give the same bytes. Not thread-safe.
 class VisualInertialOdometry {
  public:
-  VisualInertialOdometry(const VioConfig& config, const RigCalibration& rig, StageClock* clock = nullptr);
+  VisualInertialOdometry(const VioConfig& config, const RigCalibration& rig,
+                         const ImuTrackLimits& limits = {}, StageClock* clock = nullptr);
   ~VisualInertialOdometry();
 
   /// Samples that are not finite or not newer than the last are ignored.

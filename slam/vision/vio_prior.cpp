@@ -17,7 +17,7 @@ VioPrior::VioPrior(const VisionConfig& config, const InertialConfig& inertial, c
       clock_(clock),
       tracker_(config.tracker, rig.camera),
       depth_(config.depth, rig),
-      vio_(config.vio, rig, clock),
+      vio_(config.vio, rig, track_limits(inertial), clock),
       fallback_(inertial, rig, true, true),
       imu_(track_limits(inertial)) {}
 

@@ -174,6 +174,24 @@ TEST(Vio, AnImuGoneWrongIsAFailure) {
   EXPECT_GE(ridden.restarts, 1);
 }
 
+TEST(Vio, SpikesOfTheImuAreReplaced) {
+  const Drive drive(from_rest(9));
+  RideOptions options;
+  options.noise = sensor_noise(8);
+  options.depth_share = 0.6;
+  int samples = 0;
+  options.keep_imu = [&](ImuSample& sample) {  // in all places between two frames
+    if (++samples % 29 == 0) {
+      sample.gyro_radps += Vec3(1, -1.2, 1);
+      sample.accel_mps2 += Vec3(20, 20, -25);
+    }
+    return true;
+  };
+  const Ride ridden = ride(drive, options);
+  EXPECT_EQ(ridden.restarts, 0);
+  EXPECT_LT(ridden.drift(), 0.01);
+}
+
 TEST(Vio, SurvivesBadInput) {
   const Drive drive(from_rest(5));
   RideOptions options;
