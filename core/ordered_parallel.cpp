@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-#if defined(__SANITIZE_THREAD__)
+#if defined(VSSLAM_TSAN)
 #include <sanitizer/tsan_interface.h>
 #endif
 
@@ -22,14 +22,14 @@ std::unique_ptr<tbb::global_control>& limit() {
   return control;
 }
 
-// The TBB library is not built with the thread sanitizer, which therefore cannot see its fork and join.
+// The thread sanitizer cannot see the fork and join of TBB.
 void announce([[maybe_unused]] void* address) {
-#if defined(__SANITIZE_THREAD__)
+#if defined(VSSLAM_TSAN)
   __tsan_release(address);
 #endif
 }
 void observe([[maybe_unused]] void* address) {
-#if defined(__SANITIZE_THREAD__)
+#if defined(VSSLAM_TSAN)
   __tsan_acquire(address);
 #endif
 }
