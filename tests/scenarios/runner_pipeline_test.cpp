@@ -8,16 +8,17 @@
 namespace vsslam {
 namespace {
 
-// Makes numbers and adds them up: a producer and a consumer with a bounded queue.
+// Makes numbers and adds them up, modulo 2^64: a producer and a consumer with a bounded queue.
 class Sum final : public Pipeline {
  public:
-  Sum(int count, std::vector<int64_t>& sums, size_t slot, int fail_at = -1, std::atomic<bool>* stop = nullptr)
+  Sum(int count, std::vector<uint64_t>& sums, size_t slot, int fail_at = -1,
+      std::atomic<bool>* stop = nullptr)
       : count_(count), sums_(sums), slot_(slot), fail_at_(fail_at), stop_(stop) {}
 
   Step claim() override {
     if (!adding_ && queued_ > 0) {
       adding_ = true;
-      return {.work = [this] { sums_[slot_] = sums_[slot_] * 3 + added_; },
+      return {.work = [this] { sums_[slot_] = sums_[slot_] * 3 + static_cast<uint64_t>(added_); },
               .commit = [this] { --queued_, ++added_, adding_ = false; }};
     }
     if (!making_ && made_ < count_ && queued_ < 4) {
@@ -35,7 +36,7 @@ class Sum final : public Pipeline {
 
  private:
   int count_;
-  std::vector<int64_t>& sums_;
+  std::vector<uint64_t>& sums_;
   size_t slot_;
   int fail_at_;
   std::atomic<bool>* stop_;
@@ -43,8 +44,8 @@ class Sum final : public Pipeline {
   bool making_ = false, adding_ = false;
 };
 
-std::vector<int64_t> sums_with(int threads) {
-  std::vector<int64_t> sums(5);
+std::vector<uint64_t> sums_with(int threads) {
+  std::vector<uint64_t> sums(5);
   std::vector<std::unique_ptr<Pipeline>> pipelines;
   for (size_t i = 0; i < sums.size(); ++i) pipelines.push_back(std::make_unique<Sum>(30, sums, i));
   run_pipelines(std::move(pipelines), threads, std::atomic<bool>(false));
@@ -52,9 +53,9 @@ std::vector<int64_t> sums_with(int threads) {
 }
 
 TEST(Pipelines, GiveTheSameForAnyNumberOfThreads) {
-  const std::vector<int64_t> one = sums_with(1);
-  EXPECT_NE(one[0], 0);
-  EXPECT_EQ(std::set<int64_t>(one.begin(), one.end()).size(), 1u);
+  const std::vector<uint64_t> one = sums_with(1);
+  EXPECT_NE(one[0], 0u);
+  EXPECT_EQ(std::set<uint64_t>(one.begin(), one.end()).size(), 1u);
   EXPECT_EQ(sums_with(2), one);
   EXPECT_EQ(sums_with(7), one);
 }
@@ -65,7 +66,7 @@ TEST(Pipelines, NothingToDoEndsAtOnce) {
 
 TEST(Pipelines, AnExceptionEndsTheRun) {
   for (const int threads : {1, 3}) {
-    std::vector<int64_t> sums(2);
+    std::vector<uint64_t> sums(2);
     std::vector<std::unique_ptr<Pipeline>> pipelines;
     pipelines.push_back(std::make_unique<Sum>(1000, sums, 0));
     pipelines.push_back(std::make_unique<Sum>(1000, sums, 1, 7));
@@ -76,7 +77,7 @@ TEST(Pipelines, AnExceptionEndsTheRun) {
 TEST(Pipelines, AStopIsAnInterruption) {
   for (const int threads : {1, 3}) {
     std::atomic<bool> stop = false;
-    std::vector<int64_t> sums(1);
+    std::vector<uint64_t> sums(1);
     std::vector<std::unique_ptr<Pipeline>> pipelines;
     pipelines.push_back(std::make_unique<Sum>(1000000000, sums, 0, -1, &stop));
     EXPECT_THROW(run_pipelines(std::move(pipelines), threads, stop), Interrupted);
