@@ -4,6 +4,8 @@
 
 #include <Eigen/LU>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "core/errors.h"
 
@@ -66,15 +68,12 @@ Vec3 CameraOptics::ray(const Vec2& pixel) const {
 }
 
 ViewRays CameraOptics::grid(int width, int height, const Vec2& first_px, const Vec2& step_px) const {
-  ViewRays rays;
-  rays.width_px = width;
-  rays.height_px = height;
-  rays.pixel_angle_rad = static_cast<float>(std::atan(step_px.x() / focal_px_.x()));
-  rays.direction_camera.reserve(static_cast<size_t>(width) * static_cast<size_t>(height));
+  std::vector<Vec3f> directions;
+  directions.reserve(static_cast<size_t>(width) * static_cast<size_t>(height));
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x)
-      rays.direction_camera.push_back(ray(first_px + step_px.cwiseProduct(Vec2(x, y))).cast<float>());
-  return rays;
+      directions.push_back(ray(first_px + step_px.cwiseProduct(Vec2(x, y))).cast<float>());
+  return {width, height, std::move(directions), static_cast<float>(std::atan(step_px.x() / focal_px_.x()))};
 }
 
 ViewRays CameraOptics::rays(const Vec2& offset_px) const {

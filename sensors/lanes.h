@@ -57,9 +57,21 @@ inline Floats rough_log2(Floats x) {
 inline Floats gather(const float* base, Ints index) {
   return (Floats)_mm256_i32gather_ps(base, (__m256i)index, 4);
 }
-/// base[index] in the low half of each word and base[index + 1] in the high one, as 16-bit numbers.
-inline Words gather_pairs(const uint16_t* base, Ints index) {
-  return (Words)_mm256_i32gather_epi32(reinterpret_cast<const int*>(base), (__m256i)index, 2);
+/// base[index] and base[index + 1]. Eight loads of 64 bits: AVX2's own gathers take twice as long.
+struct Pairs {
+  Words first, second;
+};
+inline Pairs gather_pairs(const uint32_t* base, Ints index) {
+  alignas(32) int32_t at[kLanes];
+  _mm256_store_si256(reinterpret_cast<__m256i*>(at), (__m256i)index);
+  const auto two = [&](int i) {
+    const __m128i pair = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(base + at[i]));
+    return _mm_castps_pd(
+        _mm_loadh_pi(_mm_castsi128_ps(pair), reinterpret_cast<const __m64*>(base + at[i + 1])));
+  };
+  const __m256 even = _mm256_castpd_ps(_mm256_set_m128d(two(4), two(0))),
+               odd = _mm256_castpd_ps(_mm256_set_m128d(two(6), two(2)));
+  return {(Words)_mm256_shuffle_ps(even, odd, 0x88), (Words)_mm256_shuffle_ps(even, odd, 0xDD)};
 }
 
 /// Turns eight rows of eight numbers, one row per lane, into eight vectors, one per column.

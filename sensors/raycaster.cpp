@@ -3,9 +3,12 @@
 #include <embree3/rtcore.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <stdexcept>
+#include <tuple>
+#include <utility>
 
 #include "core/errors.h"
 
@@ -22,7 +25,12 @@ struct TracedObject {
   RTCGeometry geometry = nullptr;
   std::vector<Plane> planes;   ///< by triangle
   std::vector<int> materials;  ///< by triangle
-  bool moves = false;          ///< lives in the scene of moving objects
+  size_t vertices = 0;
+  bool moves = false;  ///< lives in the scene of moving objects
+  Vec3f vertex(size_t index) const {
+    return Vec3f(static_cast<const float*>(rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_VERTEX, 0)) +
+                 3 * index);
+  }
 };
 
 void check(RTCDevice device, const char* what) {
@@ -59,11 +67,19 @@ void place(const Mesh& mesh, const Eigen::Affine3d& T_world_object, TracedObject
   }
 }
 
+/// Lowest and highest corner of where the vertices are.
+std::pair<Vec3f, Vec3f> box_of(const TracedObject& object) {
+  std::pair<Vec3f, Vec3f> box{object.vertex(0), object.vertex(0)};
+  for (size_t i = 1; i < object.vertices; ++i)
+    box = {box.first.cwiseMin(object.vertex(i)), box.second.cwiseMax(object.vertex(i))};
+  return box;
+}
+
 TracedObject make_object(RTCDevice device, const Mesh& mesh, const Eigen::Affine3d& T_world_object) {
   TracedObject object;
-  size_t vertices = 0, triangles = 0;
+  size_t triangles = 0;
   for (const Primitive& primitive : mesh.primitives) {
-    vertices += primitive.positions.size();
+    object.vertices += primitive.positions.size();
     triangles += primitive.triangles.size();
     object.materials.resize(triangles, primitive.material);
   }
@@ -71,7 +87,7 @@ TracedObject make_object(RTCDevice device, const Mesh& mesh, const Eigen::Affine
   object.geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
   if (triangles == 0) return object;
   rtcSetNewGeometryBuffer(object.geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float),
-                          vertices);
+                          object.vertices);
   auto* index = static_cast<uint32_t*>(rtcSetNewGeometryBuffer(
       object.geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(uint32_t), triangles));
   check(device, "placing a mesh");
@@ -158,9 +174,9 @@ struct Raycaster::Impl {
   const World& world;
   RTCDevice device = nullptr;
   RTCScene still = nullptr, moving = nullptr;  ///< moving: objects whose pose was changed at least once
-  int moving_objects = 0;                      ///< attached to `moving`
   bool still_dirty = false, moving_dirty = false;
   std::vector<TracedObject> objects;
+  std::vector<Moved> moved;  ///< what `moving` holds, in order of first change
 
   void intersect(EmbreePacket& packet, bool coherent) const {
     RTCIntersectContext context;
@@ -168,7 +184,7 @@ struct Raycaster::Impl {
     context.flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
     for (EmbreePacket::Half& half : packet.half) {
       rtcIntersect8(half.valid, still, &context, &half.ray_hit);
-      if (moving_objects > 0) rtcIntersect8(half.valid, moving, &context, &half.ray_hit);
+      if (!moved.empty()) rtcIntersect8(half.valid, moving, &context, &half.ray_hit);
     }
   }
 
@@ -227,6 +243,10 @@ Raycaster::Raycaster(const World& world) : impl_(std::make_unique<Impl>(world)) 
 
 Raycaster::~Raycaster() = default;
 
+const std::vector<Raycaster::Moved>& Raycaster::moved() const {
+  return impl_->moved;
+}
+
 const World& Raycaster::world() const {
   return impl_->world;
 }
@@ -260,7 +280,7 @@ uint32_t Raycaster::occluded(const RayPacket& rays) const {
   for (int k = 0; k < EmbreePacket::kHalves; ++k) {
     EmbreePacket::Half& half = packet.half[k];
     rtcOccluded8(half.valid, impl_->still, &context, &half.ray_hit.ray);
-    if (impl_->moving_objects > 0) rtcOccluded8(half.valid, impl_->moving, &context, &half.ray_hit.ray);
+    if (!impl_->moved.empty()) rtcOccluded8(half.valid, impl_->moving, &context, &half.ray_hit.ray);
     for (int i = 0; i < EmbreePacket::kLanes; ++i)  // Embree's sign: -infinity
       if (half.valid[i] && half.ray_hit.ray.tfar[i] < 0) bits |= 1u << (k * EmbreePacket::kLanes + i);
   }
@@ -279,7 +299,7 @@ bool Raycaster::trace_one(const Vec3& origin_world, const Vec3& direction_world,
   ray.ray.mask = ~0u;
   ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   rtcIntersect1(impl_->still, &context, &ray);
-  if (impl_->moving_objects > 0) rtcIntersect1(impl_->moving, &context, &ray);
+  if (!impl_->moved.empty()) rtcIntersect1(impl_->moving, &context, &ray);
   if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
 
   const Plane& plane = impl_->objects[ray.hit.geomID].planes[ray.hit.primID];
@@ -309,10 +329,14 @@ void Raycaster::set_object_pose(int object, const Eigen::Affine3d& T_world_objec
     rtcAttachGeometryByID(impl.moving, traced.geometry, id);
     impl.still_dirty = true;
     traced.moves = true;
-    ++impl.moving_objects;
+    impl.moved.push_back({.object = id});
   }
   place(impl.world.meshes[static_cast<size_t>(impl.world.objects[id].mesh)], T_world_object, traced);
   rtcUpdateGeometryBuffer(traced.geometry, RTC_BUFFER_TYPE_VERTEX, 0);
+  Moved& moved =
+      *std::find_if(impl.moved.begin(), impl.moved.end(), [=](const Moved& m) { return m.object == id; });
+  moved.present = present;
+  std::tie(moved.low_world, moved.high_world) = box_of(traced);
   if (present) rtcEnableGeometry(traced.geometry);
   if (!present) rtcDisableGeometry(traced.geometry);
   rtcCommitGeometry(traced.geometry);

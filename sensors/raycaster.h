@@ -73,6 +73,13 @@ class Raycaster {
   /// change of an object moves it to a scene of its own kind, after which changes cost only what moves.
   void set_object_pose(int object, const Eigen::Affine3d& T_world_object, bool present);
   void commit();
+  /// What set_object_pose has moved so far.
+  struct Moved {
+    uint32_t object = 0;
+    bool present = true;
+    Vec3f low_world = Vec3f::Zero(), high_world = Vec3f::Zero();  ///< corners of its box where it is now
+  };
+  const std::vector<Moved>& moved() const;
 
  private:
   struct Impl;

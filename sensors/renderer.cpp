@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "core/ordered_parallel.h"
+#include "sensors/beam.h"
+#include "sensors/lanes.h"
 #include "sensors/light_map.h"
 #include "sensors/shading.h"
 
@@ -13,32 +15,36 @@ namespace {
 
 constexpr double kNodeSpacing_m = 0.15;
 constexpr size_t kMostNodes = 600'000;
-constexpr int kTile_px = 4;
-constexpr size_t kTilesAtOnce = 16;  // traced together, so that neither rays nor hits leave the first cache
 constexpr float kNearest_m = 0.02f, kFarthest_m = 1e5f;
 
-/// The rays of a 4 x 4 tile.
-void aim(const Vec3f& origin, const Eigen::Matrix3f& R_world_camera, const ViewRays& rays, int x, int y,
-         RayPacket& packet) {
-  for (int i = 0; i < RayPacket::kRays; ++i) {
-    const size_t pixel = static_cast<size_t>(y + i / kTile_px) * static_cast<size_t>(rays.width_px) +
-                         static_cast<size_t>(x + i % kTile_px);
-    const Vec3f& d = rays.direction_camera[pixel];
-    packet.direction_x[i] = d.x(), packet.direction_y[i] = d.y(), packet.direction_z[i] = d.z();
-  }
+/// Rays of a beam, to be traced one by one.
+constexpr int kPackets = Beam::kRays / RayPacket::kRays;
+
+void unpack(const Beam& beam, RayPacket (&packets)[kPackets]) {
   using namespace lanes;
-  const Eigen::Matrix3f& R = R_world_camera;
-  for (int first : {0, kLanes}) {
-    const Floats dx = load(packet.direction_x + first), dy = load(packet.direction_y + first),
-                 dz = load(packet.direction_z + first);
-    store(packet.direction_x + first, R(0, 0) * dx + R(0, 1) * dy + R(0, 2) * dz);
-    store(packet.direction_y + first, R(1, 0) * dx + R(1, 1) * dy + R(1, 2) * dz);
-    store(packet.direction_z + first, R(2, 0) * dx + R(2, 1) * dy + R(2, 2) * dz);
-    store(packet.origin_x + first, all(origin.x()));
-    store(packet.origin_y + first, all(origin.y()));
-    store(packet.origin_z + first, all(origin.z()));
+  for (int i = 0; i < Beam::kRays; i += kLanes) {
+    RayPacket& packet = packets[i / RayPacket::kRays];
+    const int first = i % RayPacket::kRays;
+    store(packet.direction_x + first, load(beam.x + i));
+    store(packet.direction_y + first, load(beam.y + i));
+    store(packet.direction_z + first, load(beam.z + i));
+    store(packet.origin_x + first, all(beam.origin.x()));
+    store(packet.origin_y + first, all(beam.origin.y()));
+    store(packet.origin_z + first, all(beam.origin.z()));
     store(packet.near_m + first, all(kNearest_m));
     store(packet.far_m + first, all(kFarthest_m));
+  }
+}
+
+/// The part of the tile that lies in the image. Its pixels come in rows of 4.
+void copy(const ShadedTile& tile, int left, int top, const ViewRays& rays, View& view) {
+  constexpr int kRow = RayTile::kBlockWidth_px;
+  for (int i = 0; i < RayTile::kRays; i += kRow) {
+    const int x = left + RayTile::pixel_x(i), y = top + RayTile::pixel_y(i);
+    if (x >= rays.width_px || y >= rays.height_px) continue;
+    const auto pixel = static_cast<size_t>(y) * static_cast<size_t>(rays.width_px) + static_cast<size_t>(x);
+    std::copy_n(&tile.luminance[i], kRow, &view.luminance[pixel]);
+    std::copy_n(&tile.depth_m[i], kRow, &view.depth_m[pixel]);
   }
 }
 
@@ -51,6 +57,7 @@ struct Renderer::Impl {
         triangles(world),
         textures(world),
         lights(world, triangles, illumination) {
+    tree = TriangleTree(triangles);
     const LightMapCharts charts = chart_surfaces(triangles, kNodeSpacing_m, kMostNodes);
     records = surface_records(triangles, charts, textures);
     light_map = bake_light_map({triangles, charts, textures, lights, raycaster});
@@ -91,11 +98,33 @@ struct Renderer::Impl {
             .sky = sky()};
   }
 
+  std::vector<MovedTriangles> moved() const {
+    std::vector<MovedTriangles> all;
+    for (const Raycaster::Moved& m : raycaster.moved())
+      all.push_back({.first = static_cast<uint32_t>(first_of_object[m.object]),
+                     .end = static_cast<uint32_t>(first_of_object[m.object + 1]),
+                     .present = m.present,
+                     .low_world = m.low_world,
+                     .high_world = m.high_world});
+    return all;
+  }
+
+  void trace_singly(const Surfaces& surfaces, const Viewpoint& viewpoint, const Beam& beam,
+                    ShadedTile& shaded) const {
+    RayPacket packets[kPackets];
+    SurfacePacket hits[kPackets];
+    unpack(beam, packets);
+    raycaster.trace(packets, hits);
+    for (int k = 0; k < kPackets; ++k)
+      shade(surfaces, viewpoint, packets[k], hits[k], k * RayPacket::kRays, shaded);
+  }
+
   const Raycaster& raycaster;
   Illumination illumination;
   PlacedTriangles triangles;
   GreyTextures textures;
   LightSources lights;
+  TriangleTree tree;
   std::vector<size_t> first_of_object;
   std::vector<SurfaceRecord> records;
   LightMap light_map;
@@ -118,37 +147,27 @@ void Renderer::set_light_levels(const LightLevels& levels) {
 }
 
 void Renderer::render(const SE3& T_world_camera, const ViewRays& rays, View& view) const {
-  const auto width = static_cast<size_t>(rays.width_px), height = static_cast<size_t>(rays.height_px);
-  view.luminance.resize(width * height);
-  view.depth_m.resize(width * height);
+  view.luminance.resize(rays.direction_camera.size());
+  view.depth_m.resize(rays.direction_camera.size());
   const Eigen::Matrix3f R = T_world_camera.matrix3().cast<float>();
   const Vec3f origin = T_world_camera.translation.cast<float>();
   const Viewpoint viewpoint{R.col(0), R.col(1), R.col(2), rays.pixel_angle_rad};
   const Surfaces surfaces = impl_->surfaces();
-  const size_t columns = width / kTile_px, tile_rows = height / kTile_px;
-
-  const auto render_tiles = [&](size_t row, size_t begin, size_t end) {
-    RayPacket packets[kTilesAtOnce];
-    SurfacePacket hits[kTilesAtOnce];
-    const size_t count = end - begin;
-    for (size_t i = 0; i < count; ++i)
-      aim(origin, R, rays, static_cast<int>((begin + i) * kTile_px), static_cast<int>(row * kTile_px),
-          packets[i]);
-    impl_->raycaster.trace(std::span(packets, count), std::span(hits, count));
-    for (size_t i = 0; i < count; ++i) {
-      ShadedPacket shaded;
-      shade(surfaces, viewpoint, packets[i], hits[i], shaded);
-      for (size_t line = 0; line < kTile_px; ++line) {
-        const size_t pixel = (row * kTile_px + line) * width + (begin + i) * kTile_px;
-        std::copy_n(&shaded.luminance[line * kTile_px], kTile_px, &view.luminance[pixel]);
-        std::copy_n(&shaded.depth_m[line * kTile_px], kTile_px, &view.depth_m[pixel]);
-      }
+  const std::vector<MovedTriangles> moved = impl_->moved();
+  const auto columns = static_cast<size_t>(rays.tile_columns);
+  parallel_pieces(rays.tiles.size(), 4 * columns, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      const RayTile& tile = rays.tiles[i];
+      const Beam beam = beam_of(tile, origin, R);
+      BeamHits hits;
+      ShadedTile shaded;
+      if (tile.narrow && trace(impl_->tree, beam, moved, kNearest_m, hits))
+        shade(surfaces, viewpoint, tile, beam, hits, shaded);
+      else
+        impl_->trace_singly(surfaces, viewpoint, beam, shaded);
+      copy(shaded, static_cast<int>(i % columns) * RayTile::kSide_px,
+           static_cast<int>(i / columns) * RayTile::kSide_px, rays, view);
     }
-  };
-  parallel_pieces(tile_rows, 8, [&](size_t first, size_t last) {
-    for (size_t row = first; row < last; ++row)
-      for (size_t begin = 0; begin < columns; begin += kTilesAtOnce)
-        render_tiles(row, begin, std::min(columns, begin + kTilesAtOnce));
   });
 }
 

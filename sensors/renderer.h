@@ -8,17 +8,11 @@
 
 #include "core/se3.h"
 #include "sensors/raycaster.h"
+#include "sensors/view_rays.h"
 #include "worlds/lighting.h"
 #include "worlds/world.h"
 
 namespace vsslam {
-
-/// The rays of a camera's pixels, row-major. Camera frame: x right, y down, z forward.
-struct ViewRays {
-  int width_px = 0, height_px = 0;      ///< multiples of 4
-  std::vector<Vec3f> direction_camera;  ///< unit, through the pixel's centre
-  float pixel_angle_rad = 0;            ///< angle between neighbouring rays at the image's centre
-};
 
 /// One instant seen through ViewRays, row-major.
 struct View {

@@ -109,7 +109,7 @@ GreyTextures::GreyTextures(const World& world) {
     for (const Image& image : images) {
       levels_.push_back({static_cast<int32_t>(size), image.width_px + 2, static_cast<float>(image.width_px),
                          static_cast<float>(image.height_px)});
-      size += static_cast<size_t>(image.width_px + 2) * static_cast<size_t>(image.height_px + 2);
+      size += static_cast<size_t>(image.width_px + 2) * static_cast<size_t>(image.height_px + 1);
     }
   }
   texels_.resize(size + 2);  // pairs are read: one may reach beyond the last texel
@@ -117,12 +117,21 @@ GreyTextures::GreyTextures(const World& world) {
     for (size_t i = begin; i < end; ++i)
       for (size_t k = 0; k < pyramids[i].size(); ++k) {
         const Image& image = pyramids[i][k];
-        uint16_t* to =
+        uint32_t* to =
             &texels_[static_cast<size_t>(levels_[static_cast<size_t>(of_look[i].first_level) + k].offset)];
         const int w = image.width_px, h = image.height_px;
-        for (int y = -1; y <= h; ++y) {
-          const float* row = &image.texels[static_cast<size_t>((y + h) % h) * static_cast<size_t>(w)];
-          for (int x = -1; x <= w; ++x) *to++ = static_cast<uint16_t>(row[(x + w) % w] * 65535.0f + 0.5f);
+        const auto row = [&](int y) {
+          return &image.texels[static_cast<size_t>((y + h) % h) * static_cast<size_t>(w)];
+        };
+        const auto texel = [](float reflectance) {
+          return static_cast<uint32_t>(reflectance * 65535.0f + 0.5f);
+        };
+        for (int y = -1; y < h; ++y) {
+          const float *upper = row(y), *lower = row(y + 1);
+          const auto column = [&](int x) { return texel(upper[x]) | texel(lower[x]) << 16; };
+          *to++ = column(w - 1);
+          for (int x = 0; x < w; ++x) *to++ = column(x);
+          *to++ = column(0);
         }
       }
   });
@@ -152,14 +161,13 @@ inline Floats GreyTextures::bilinear(const LevelLanes& level, Floats u, Floats v
   const Ints ix = truncated(x), iy = truncated(y);
   const Floats fx = x - floats(ix), fy = y - floats(iy);
   const Ints index = level.offset + iy * level.stride + ix;
-  const Words upper = gather_pairs(texels_.data(), index),
-              lower = gather_pairs(texels_.data(), index + level.stride);
-  const auto mix = [&fx](Words pair) {
-    const Floats left = floats((Ints)(pair & 0xFFFFu)), right = floats((Ints)(pair >> 16));
-    return left + fx * (right - left);
+  const auto [left, right] = gather_pairs(texels_.data(), index);
+  const auto mix = [&fy](Words column) {
+    const Floats upper = floats((Ints)(column & 0xFFFFu)), lower = floats((Ints)(column >> 16));
+    return upper + fy * (lower - upper);
   };
-  const Floats top = mix(upper);
-  return top + fy * (mix(lower) - top);
+  const Floats at_left = mix(left);
+  return at_left + fx * (mix(right) - at_left);
 }
 
 Floats GreyTextures::along(const LevelLanes& level, Floats u, Floats v, Floats length_u, Floats length_v,
@@ -194,13 +202,16 @@ Floats GreyTextures::sample(Ints first_level, Ints levels, Floats width_px, Floa
   const Floats top = floats(levels - 1);
   const Floats lod = min(max(0.5f * rough_log2(major2 / (probes * probes)), all(0)), top);
   const Ints fine = truncated(lod);
-  const Floats blend = lod - floats(fine);
-  const Floats near = along(at(first_level + fine), u, v, length_u, length_v, probes);
-  if (none(blend > 0)) return near * (1 / 65535.0f);
+  // Half of the way needs one level only: blending over the rest is as smooth to the eye.
+  const Floats blend = min(max(2.0f * (lod - floats(fine)) - 0.5f, all(0)), all(1));
+  const auto finer = [&] { return along(at(first_level + fine), u, v, length_u, length_v, probes); };
+  if (none(blend > 0)) return finer() * (1 / 65535.0f);
   // Texels of the next level are twice as large: half the probes do.
   const Ints next = first_level + truncated(min(floats(fine) + 1.0f, top));
-  const Floats far = along(at(next), u, v, length_u, length_v, floor(0.5f * (probes + 1.0f)));
-  return (near + blend * (far - near)) * (1 / 65535.0f);
+  const Floats coarser = along(at(next), u, v, length_u, length_v, floor(0.5f * (probes + 1.0f)));
+  if (none(blend < 1)) return coarser * (1 / 65535.0f);
+  const Floats near = finer();
+  return (near + blend * (coarser - near)) * (1 / 65535.0f);
 }
 
 float GreyTextures::sample(const Pyramid& pyramid, const Vec2f& uv, float footprint_px) const {

@@ -35,8 +35,9 @@ class GreyTextures {
   struct Footprint {
     lanes::Floats across_x, across_y, down_x, down_y;
   };
-  /// Mean reflectance under the footprint about (u, v), which wrap around: trilinear, and where the footprint
-  /// is long and thin up to kMaxProbes times along it. Sizes are those of the finest level.
+  /// Mean reflectance under the footprint about (u, v), which wrap around: linear within a level and, in the middle half
+  /// of the way, between two levels; where the footprint is long and thin up to kMaxProbes times along it. Sizes are
+  /// those of the finest level.
   lanes::Floats sample(lanes::Ints first_level, lanes::Ints levels, lanes::Floats width_px,
                        lanes::Floats height_px, lanes::Floats u, lanes::Floats v,
                        const Footprint& footprint) const;
@@ -61,7 +62,7 @@ class GreyTextures {
 
   std::vector<Pyramid> pyramids_;  ///< by material
   std::vector<Level> levels_;
-  std::vector<uint16_t> texels_;  ///< 0..65535: reflectance 0..1
+  std::vector<uint32_t> texels_;  ///< each with the one below it in the high half; 0..65535: reflectance 0..1
 };
 
 }  // namespace vsslam

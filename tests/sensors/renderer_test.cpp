@@ -16,17 +16,14 @@ constexpr double kPi = std::numbers::pi;
 
 /// Looks along world z from the origin of its own frame; `focal_px` sets how much it sees.
 ViewRays pinhole(int width_px, int height_px, double focal_px) {
-  ViewRays rays;
-  rays.width_px = width_px;
-  rays.height_px = height_px;
-  rays.pixel_angle_rad = static_cast<float>(1 / focal_px);
+  std::vector<Vec3f> directions;
   for (int y = 0; y < height_px; ++y)
     for (int x = 0; x < width_px; ++x)
-      rays.direction_camera.push_back(
+      directions.push_back(
           Vec3((x - (width_px - 1) / 2.0) / focal_px, (y - (height_px - 1) / 2.0) / focal_px, 1)
               .normalized()
               .cast<float>());
-  return rays;
+  return {width_px, height_px, std::move(directions), static_cast<float>(1 / focal_px)};
 }
 
 /// The camera at `from` looks along world x; right in the picture is world -y.
@@ -282,6 +279,25 @@ TEST(Renderer, AMovedObjectKeepsItsLight) {
   const View after = scene.render(pinhole(4, 4, 400));
   EXPECT_NEAR(after.luminance[5], before, 0.01 * before);
   EXPECT_NEAR(after.depth_m[5], 4, 1e-5);
+}
+
+// An object that was moved to where it stood is traced ray by ray instead of in beams.
+TEST(Renderer, BeamsShadeAsTheirRaysDo) {
+  Scene scene = chequered_board(3, 0.1f, 30);
+  const ViewRays rays = pinhole(68, 44, 30);  // not whole tiles
+  const SE3 T_world_camera =
+      looking_along_x({0.3, 0.137, 0.5}) * SE3::from_rpy({0.1, 0.5, 0.2}, Vec3::Zero());
+  const View beams = scene.render(rays, T_world_camera);
+  scene.raycaster.set_object_pose(0, Eigen::Affine3d::Identity(), true);
+  scene.raycaster.commit();
+  const View singly = scene.render(rays, T_world_camera);
+  double sum = 0;
+  for (size_t i = 0; i < beams.luminance.size(); ++i) {
+    EXPECT_NEAR(1 / beams.depth_m[i], 1 / singly.depth_m[i], 1e-6);  // nothing is infinitely deep
+    EXPECT_NEAR(beams.luminance[i], singly.luminance[i], 0.01 * 1000 / kPi);
+    sum += std::abs(beams.luminance[i] - singly.luminance[i]);
+  }
+  EXPECT_LT(sum / static_cast<double>(beams.luminance.size()), 1e-4 * 1000 / kPi);
 }
 
 TEST(Renderer, SameBytesForOneAndTwoThreads) {
