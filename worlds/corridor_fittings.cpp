@@ -5,6 +5,7 @@
 #include <string>
 
 #include "worlds/likeness.h"
+#include "worlds/route_clearance.h"
 
 namespace vsslam {
 
@@ -97,16 +98,7 @@ void add_lamp(FloorPlan& plan, std::vector<Light>& lights, const Leg& leg, doubl
 /// Finds free spots for furniture: on the floor, off the routes, clear of each other.
 class Floorspace {
  public:
-  Floorspace(const FloorPlan& plan, const std::vector<Route>& routes) : plan_(plan) {
-    for (const Route& route : routes)
-      for (size_t i = 0; i < route.points_world.size(); ++i) {
-        if (i + 1 == route.points_world.size() && !route.closed) continue;
-        const Vec3& a = route.points_world[i];
-        const Vec3& b = route.points_world[(i + 1) % route.points_world.size()];
-        const int steps = static_cast<int>((b - a).norm() / 0.1) + 1;
-        for (int k = 0; k <= steps; ++k) path_.push_back((a + (b - a) * k / steps).head<2>());
-      }
-  }
+  Floorspace(const FloorPlan& plan, const std::vector<Route>& routes) : plan_(plan), routes_(routes) {}
 
   bool claim(const Rect& r) {
     constexpr double kGap_m = 0.05;
@@ -118,17 +110,14 @@ class Floorspace {
       if (solid.overlaps(wide)) return false;
     for (const Rect& taken : taken_)
       if (taken.overlaps(wide)) return false;
-    for (const Eigen::Vector2d& p : path_) {
-      const Eigen::Vector2d nearest(std::clamp(p.x(), r.x0, r.x1), std::clamp(p.y(), r.y0, r.y1));
-      if ((p - nearest).norm() < kRouteClearance_m) return false;
-    }
+    if (routes_.distance_m(r) < kRouteClearance_m) return false;
     taken_.push_back(r);
     return true;
   }
 
  private:
   const FloorPlan& plan_;
-  std::vector<Eigen::Vector2d> path_;
+  RouteClearance routes_;
   std::vector<Rect> taken_;
 };
 

@@ -2,11 +2,10 @@
 
 #include <array>
 #include <cmath>
-#include <functional>
 #include <numbers>
 #include <string>
+#include <utility>
 
-#include "core/ordered_parallel.h"
 #include "worlds/indoor_textures.h"
 
 namespace vsslam {
@@ -16,20 +15,10 @@ namespace {
 constexpr float kLampLuminance_cdpm2 = 3500, kEmergencyLuminance_cdpm2 = 400;
 const Vec3f kLampColor(1.0f, 0.96f, 0.88f), kEmergencyColor(0.9f, 1.0f, 0.9f);
 
-struct Paint {
-  Vec3f srgb;
-  float lidar_albedo;
-};
-
-Vec3f linear(const Vec3f& srgb) {
-  return srgb.unaryExpr(
-      [](float c) { return c <= 0.04045f ? c / 12.92f : std::pow((c + 0.055f) / 1.055f, 2.4f); });
-}
-
-class PaletteBuilder {
+class IndoorPaletteBuilder {
  public:
-  PaletteBuilder(uint64_t seed, double wall_height_m, bool textures)
-      : seed_(seed), wall_height_m_(wall_height_m), textures_(textures) {}
+  IndoorPaletteBuilder(uint64_t seed, double wall_height_m, bool textures)
+      : seed_(seed), wall_height_m_(wall_height_m), builder_(textures) {}
 
   IndoorPalette build() {
     add_walls();
@@ -37,32 +26,15 @@ class PaletteBuilder {
     add_doors();
     add_signs();
     add_stuff();
-    IndoorPalette& p = palette_;
-    p.textures.resize(painters_.size());
-    parallel_pieces(painters_.size(), 1, [&](size_t begin, size_t end) {
-      for (size_t i = begin; i < end; ++i) p.textures[i] = painters_[i]();
-    });
-    return std::move(p);
+    static_cast<Palette&>(palette_) = builder_.finish();
+    return std::move(palette_);
   }
 
  private:
-  using Painter = std::function<Texture()>;
-
-  /// `srgb` is the colour without texture, and what the texture is painted in.
-  int add(const std::string& name, const Paint& paint, float roughness, Painter painter = {}) {
-    Material m{.name = name,
-               .base_color = linear(paint.srgb),
-               .roughness = roughness,
-               .lidar_albedo = paint.lidar_albedo};
-    if (textures_ && painter) {
-      m.base_color = Vec3f::Ones();
-      m.base_color_texture = static_cast<int>(painters_.size());
-      painters_.push_back(std::move(painter));
-    }
-    palette_.materials.push_back(std::move(m));
-    return static_cast<int>(palette_.materials.size()) - 1;
+  int add(const std::string& name, const Paint& paint, float roughness,
+          PaletteBuilder::Painter painter = {}) {
+    return builder_.add(name, paint, roughness, std::move(painter));
   }
-  Material& at(int index) { return palette_.materials[static_cast<size_t>(index)]; }
 
   int add_wall(const std::string& name, const Paint& paint, int width_px) {
     const double height_m = wall_height_m_;
@@ -114,7 +86,7 @@ class PaletteBuilder {
     }
     palette_.door_frame = add("door_frame", {{0.42f, 0.43f, 0.45f}, 0.4f}, 0.5f);
     palette_.glass = add("glass", {{0.2f, 0.24f, 0.26f}, 0.05f}, 0.05f);
-    at(palette_.glass).glass = true;
+    builder_.at(palette_.glass).glass = true;
   }
 
   void add_signs() {
@@ -128,11 +100,12 @@ class PaletteBuilder {
             [seed = seed_] { return extinguisher_texture(seed, "extinguisher_sign"); });
     palette_.exit_sign = add("exit_sign", {{0.04f, 0.5f, 0.22f}, 0.6f}, 0.3f,
                              [seed = seed_] { return exit_texture(seed, "exit_sign"); });
-    for (const int sign : {palette_.extinguisher_sign, palette_.exit_sign}) at(sign).retro_reflective = true;
+    for (const int sign : {palette_.extinguisher_sign, palette_.exit_sign})
+      builder_.at(sign).retro_reflective = true;
     palette_.lamp = add("lamp", {{0.95f, 0.95f, 0.94f}, 0.7f}, 0.3f);
-    at(palette_.lamp).emissive = kLampLuminance_cdpm2 * kLampColor;
+    builder_.at(palette_.lamp).emissive = kLampLuminance_cdpm2 * kLampColor;
     palette_.emergency_lamp = add("emergency", {{0.93f, 0.95f, 0.93f}, 0.7f}, 0.3f);
-    at(palette_.emergency_lamp).emissive = kEmergencyLuminance_cdpm2 * kEmergencyColor;
+    builder_.at(palette_.emergency_lamp).emissive = kEmergencyLuminance_cdpm2 * kEmergencyColor;
   }
 
   int add_stuff_material(const std::string& name, const Paint& paint, double cell_x_m, double cell_y_m,
@@ -153,8 +126,7 @@ class PaletteBuilder {
 
   uint64_t seed_;
   double wall_height_m_;
-  bool textures_;
-  std::vector<Painter> painters_;
+  PaletteBuilder builder_;
   IndoorPalette palette_;
 };
 
@@ -174,7 +146,7 @@ Light ceiling_lamp(const std::string& group, size_t number, const Vec3& panel_wo
 }
 
 IndoorPalette make_indoor_palette(uint64_t seed, double wall_height_m, bool textures) {
-  return PaletteBuilder(seed, wall_height_m, textures).build();
+  return IndoorPaletteBuilder(seed, wall_height_m, textures).build();
 }
 
 }  // namespace vsslam

@@ -6,15 +6,13 @@
 #include <vector>
 
 #include "worlds/floor_plan.h"
+#include "worlds/palette.h"
 #include "worlds/world.h"
 
 namespace vsslam {
 
 /// Materials by their use. Indices are into `materials`.
-struct IndoorPalette {
-  std::vector<Texture> textures;
-  std::vector<Material> materials;
-
+struct IndoorPalette : Palette {
   std::vector<Finish> corridor_walls;  ///< variants of one paint: they may stand side by side
   std::vector<Finish> room_walls;      ///< paints that tell one lobby or corner from another
   std::vector<Finish> room_floors;

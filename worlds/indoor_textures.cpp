@@ -3,26 +3,11 @@
 #include <cmath>
 
 #include "worlds/canvas.h"
+#include "worlds/canvas_marks.h"
 
 namespace vsslam {
 
 namespace {
-
-/// The n-th draw of a picture, one after another.
-class Draws {
- public:
-  explicit Draws(const Canvas& canvas) : stream_(canvas.stream()) {}
-  double operator()(double low, double high) { return low + (high - low) * stream_.uniform(next_++, 7); }
-  Vec3f color(double low, double high) {
-    const auto channel = [&] { return static_cast<float>((*this)(low, high)); };
-    const float r = channel(), g = channel(), b = channel();
-    return {r, g, b};
-  }
-
- private:
-  RandomStream stream_;
-  uint64_t next_ = 0;
-};
 
 // Marks of use: more of them low on the wall, where trolleys and shoes reach.
 void scuff(Canvas& canvas, Draws& draw, int count) {
@@ -33,14 +18,6 @@ void scuff(Canvas& canvas, Draws& draw, int count) {
     const float tone = static_cast<float>(draw(0.15, 0.55));
     canvas.stroke(x, y, x + length * std::cos(angle), y + length * std::sin(angle), draw(0.003, 0.012),
                   Vec3f::Constant(tone), static_cast<float>(draw(0.15, 0.6)));
-  }
-}
-
-void spots(Canvas& canvas, Draws& draw, int count, double smallest_m, double largest_m, float strongest) {
-  for (int i = 0; i < count; ++i) {
-    const double x = draw(0, canvas.width_m()), y = draw(0, canvas.height_m());
-    const float tone = static_cast<float>(draw(0.1, 0.5)), opacity = static_cast<float>(draw(0.1, strongest));
-    canvas.disc(x, y, draw(smallest_m, largest_m), Vec3f::Constant(tone), opacity);
   }
 }
 

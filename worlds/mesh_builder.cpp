@@ -41,7 +41,6 @@ void MeshBuilder::quad(int material, const Vertex& a, const Vertex& b, const Ver
   triangle(material, a, c, d);
 }
 
-// Texture coordinates by projection: u to the right and v down, as seen by who faces the surface.
 void MeshBuilder::face(int material, const std::array<Vec3, 4>& corners, const Vec3& normal,
                        double uv_per_m) {
   const bool level = std::abs(normal.z()) > 0.5;
@@ -95,6 +94,36 @@ void MeshBuilder::cylinder(int material, const Vec3& foot_m, double radius_m, do
          vertex(top_m + top_radius_m * a, na, ua, -height_m * uv_per_m));
     cap(top_m, top_radius_m, i, i + 1, Vec3::UnitZ());
     cap(foot_m, radius_m, i + 1, i, -Vec3::UnitZ());
+  }
+}
+
+void MeshBuilder::limb(int material, const Vec3& from_m, const Vec3& to_m, double radius_m,
+                       double end_radius_m, int sides, bool closed, double uv_per_m) {
+  const Vec3 axis = (to_m - from_m).normalized();
+  const Vec3 right = (std::abs(axis.z()) < 0.9 ? Vec3::UnitZ() : Vec3::UnitX()).cross(axis).normalized();
+  const Vec3 up = axis.cross(right);
+  const double length_m = (to_m - from_m).norm();
+  const auto spoke = [&](int i) {
+    const double angle = 2 * std::numbers::pi * (i % sides) / sides;
+    return Vec3(std::cos(angle) * right + std::sin(angle) * up);
+  };
+  const auto vertex = [&](const Vec3& p, const Vec3& n, double u, double v) {
+    return Vertex{p.cast<float>(), n.cast<float>(), Eigen::Vector2d(u, v).cast<float>() * uv_per_m};
+  };
+  const auto cap = [&](const Vec3& centre, double r, int i, int j, const Vec3& n) {
+    triangle(material, vertex(centre, n, 0, 0), vertex(centre + r * spoke(i), n, r, 0),
+             vertex(centre + r * spoke(j), n, 0, r));
+  };
+  for (int i = 0; i < sides; ++i) {
+    const Vec3 a = spoke(i), b = spoke(i + 1);
+    const double ua = 2 * std::numbers::pi * radius_m * i / sides,
+                 ub = 2 * std::numbers::pi * radius_m * (i + 1) / sides;
+    quad(material, vertex(from_m + radius_m * a, a, ua, 0), vertex(from_m + radius_m * b, b, ub, 0),
+         vertex(to_m + end_radius_m * b, b, ub, -length_m),
+         vertex(to_m + end_radius_m * a, a, ua, -length_m));
+    if (!closed) continue;
+    cap(to_m, end_radius_m, i, i + 1, axis);
+    cap(from_m, radius_m, i + 1, i, -axis);
   }
 }
 

@@ -22,11 +22,16 @@ class MeshBuilder {
   void triangle(int material, const Vertex& a, const Vertex& b, const Vertex& c);
   void quad(int material, const Vertex& a, const Vertex& b, const Vertex& c, const Vertex& d);
 
+  /// A flat quad, textured by projection at `uv_per_m`: u to the right and v down, as seen by who faces it.
+  void face(int material, const std::array<Vec3, 4>& corners, const Vec3& normal, double uv_per_m = 1);
   /// A box with its bottom at the centre of its foot, textured at `uv_per_m`.
   void box(int material, const Vec3& foot_m, const Vec3& size_m, double uv_per_m = 1);
   /// An upright closed cylinder or, with a second radius, a truncated cone.
   void cylinder(int material, const Vec3& foot_m, double radius_m, double top_radius_m, double height_m,
                 int sides, double uv_per_m = 1);
+  /// A truncated cone between any two points, smooth; `closed` adds flat ends.
+  void limb(int material, const Vec3& from_m, const Vec3& to_m, double radius_m, double end_radius_m,
+            int sides, bool closed, double uv_per_m = 1);
   /// A lumpy closed ball: a sphere of `rings` x 2 `rings` faces whose radius varies by `lumps`.
   void ball(int material, const Vec3& centre_m, double radius_m, int rings, double lumps, uint64_t seed);
 
@@ -43,7 +48,6 @@ class MeshBuilder {
     std::unordered_map<Key, uint32_t, Hash> welded;  // looked up only, never iterated
   };
   static uint32_t weld(Part& part, const Vertex& vertex);
-  void face(int material, const std::array<Vec3, 4>& corners, const Vec3& normal, double uv_per_m);
 
   std::map<int, Part> parts_;
 };

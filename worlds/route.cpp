@@ -31,6 +31,17 @@ void turn(std::vector<Vec3>& points, const Vec3& corner, const Vec3& in, const V
   }
 }
 
+// On to a corner and round it, by an arc that takes at most half of the sides before and after.
+void round_corner(std::vector<Vec3>& points, const Vec3& before, const Vec3& corner, const Vec3& after,
+                  double radius_m, double spacing_m) {
+  const Vec3 in = corner - before, out = after - corner;
+  const double angle = std::abs(std::atan2(in.cross(out).z(), in.dot(out)));
+  const double room_m = 0.5 * std::min(in.norm(), out.norm());
+  const double r = std::min(radius_m, room_m / std::max(std::tan(angle / 2), 1e-9));
+  walk(points, points.back(), corner - in.normalized() * (r * std::tan(angle / 2)), spacing_m);
+  turn(points, corner, in.normalized(), out.normalized(), r, spacing_m);
+}
+
 }  // namespace
 
 Route rounded_loop(std::string name, const std::vector<Vec3>& corners_world, double radius_m,
@@ -39,17 +50,20 @@ Route rounded_loop(std::string name, const std::vector<Vec3>& corners_world, dou
   const auto corner = [&](size_t i) { return corners_world[i % n]; };
   const Vec3 start = 0.5 * (corner(n - 1) + corner(0));
   Route route{.name = std::move(name), .closed = true, .points_world = {start}};
-  for (size_t i = 0; i < n; ++i) {
-    const Vec3 in = corner(i) - corner(i + n - 1), out = corner(i + 1) - corner(i);
-    const double angle = std::abs(std::atan2(in.cross(out).z(), in.dot(out)));
-    const double room_m = 0.5 * std::min(in.norm(), out.norm());
-    const double r = std::min(radius_m, room_m / std::max(std::tan(angle / 2), 1e-9));
-    const Vec3 arc_start = corner(i) - in.normalized() * (r * std::tan(angle / 2));
-    walk(route.points_world, route.points_world.back(), arc_start, spacing_m);
-    turn(route.points_world, corner(i), in.normalized(), out.normalized(), r, spacing_m);
-  }
+  for (size_t i = 0; i < n; ++i)
+    round_corner(route.points_world, corner(i + n - 1), corner(i), corner(i + 1), radius_m, spacing_m);
   walk(route.points_world, route.points_world.back(), start, spacing_m);
   route.points_world.pop_back();  // closed: the start is not repeated
+  return route;
+}
+
+Route rounded_path(std::string name, const std::vector<Vec3>& corners_world, double radius_m,
+                   double spacing_m) {
+  Route route{.name = std::move(name), .closed = false, .points_world = {corners_world.front()}};
+  for (size_t i = 1; i + 1 < corners_world.size(); ++i)
+    round_corner(route.points_world, corners_world[i - 1], corners_world[i], corners_world[i + 1], radius_m,
+                 spacing_m);
+  walk(route.points_world, route.points_world.back(), corners_world.back(), spacing_m);
   return route;
 }
 

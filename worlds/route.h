@@ -14,6 +14,10 @@ namespace vsslam {
 Route rounded_loop(std::string name, const std::vector<Vec3>& corners_world, double radius_m,
                    double spacing_m);
 
+/// The same through the points of an open line, whose ends are kept.
+Route rounded_path(std::string name, const std::vector<Vec3>& corners_world, double radius_m,
+                   double spacing_m);
+
 /// A straight open route from a to b, both included.
 Route straight_route(std::string name, const Vec3& a_world, const Vec3& b_world, double spacing_m);
 
