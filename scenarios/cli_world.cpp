@@ -40,9 +40,10 @@ World load_world(const WorldArguments& arguments) {
     return read_gltf(find_file("worlds", arguments.world));
   }
   WorldSource source;
-  const std::vector<std::string> names = library_names("worlds");
-  const bool in_library = std::find(names.begin(), names.end(), arguments.world) != names.end();
-  if (!in_library && (arguments.world == "corridor" || arguments.world == "room")) {
+  const auto holds = [&](const std::vector<std::string>& names) {
+    return std::find(names.begin(), names.end(), arguments.world) != names.end();
+  };
+  if (!holds(library_names("worlds")) && holds(generator_names())) {
     load_config_text("generator: " + arguments.world, arguments.world, source, library(), overrides);
   } else {
     load_config(find_file("worlds", arguments.world), source, library(), overrides);
@@ -96,7 +97,7 @@ void add_world_command(CLI::App& app, Console& console, Command& command) {
   CLI::App* sub = app.add_subcommand("world", "generate a world and write it as .glb, or describe one");
   const auto arguments = std::make_shared<WorldArguments>();
   sub->add_option("world", arguments->world,
-                  "a name from the library, corridor, room, or a .yaml, .glb or .gltf file")
+                  "a name from the library, a generator, or a .yaml, .glb or .gltf file")
       ->required();
   sub->add_option("--set", arguments->settings,
                   "key=value; changes a setting of the generator; may be repeated")

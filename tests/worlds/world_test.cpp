@@ -133,7 +133,8 @@ TEST(WorldSource, FilesAreRelativeToWhoNamesThem) {
   WorldSource again;
   load_config_text(save_config(source), "saved.yaml", again, library_file);
   EXPECT_EQ(make_world(again).triangle_count(), world.triangle_count());
-  EXPECT_THROW(make_world({.file = "nowhere.glb", .corridor = {}, .room = {}}), InputError);
+  EXPECT_THROW(make_world({.file = "nowhere.glb", .corridor = {}, .room = {}, .street = {}, .gate = {}}),
+               InputError);
 }
 
 TEST(Describe, NamesWhatThereIs) {
