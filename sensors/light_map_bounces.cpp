@@ -59,7 +59,7 @@ class Bounces {
   IndirectLight run() {
     in_pieces([this](size_t i) { trace(i); });
     reflect_and_emit();
-    IndirectLight light{std::vector<float>(sites_ * groups_), std::vector<bool>(sites_)};
+    IndirectLight light{std::vector<float>(sites_ * groups_), rays_, std::vector<bool>(sites_)};
     for (int bounce = 0; bounce < kMostBounces; ++bounce)
       if (gather(light.illuminance) < kSettled) break;
     for (size_t i = 0; i < sites_; ++i) light.buried[i] = 2 * backs_[i] > rays_;

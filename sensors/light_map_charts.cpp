@@ -104,11 +104,35 @@ uint32_t nodes_along(float extent_m, double spacing_m) {
   return static_cast<uint32_t>(std::ceil(extent_m / spacing_m)) + 1;
 }
 
-size_t node_count(const std::vector<Chart>& charts, double spacing_m) {
+/// How densely charts are covered.
+struct Density {
+  double spacing_m;
+  float single_below_m = 0;  ///< charts that are smaller both ways have one node
+};
+
+LightMapCharts::Grid grid_of(const Chart& c, const Density& density) {
+  if (c.extent_m.maxCoeff() < density.single_below_m) return {};
+  return {.width = nodes_along(c.extent_m.x(), density.spacing_m),
+          .height = nodes_along(c.extent_m.y(), density.spacing_m)};
+}
+
+size_t node_count(const std::vector<Chart>& charts, const Density& density) {
   size_t count = 0;
-  for (const Chart& c : charts)
-    count += size_t{nodes_along(c.extent_m.x(), spacing_m)} * nodes_along(c.extent_m.y(), spacing_m);
+  for (const Chart& c : charts) {
+    const LightMapCharts::Grid grid = grid_of(c, density);
+    count += size_t{grid.width} * grid.height;
+  }
   return count;
+}
+
+/// In worlds beyond the budget leaves and twigs make do with one node before large surfaces get coarser.
+Density affordable(const std::vector<Chart>& charts, double spacing_m, size_t max_nodes) {
+  constexpr float kSmall_m = 0.6f;
+  Density density{spacing_m};
+  const size_t allowed = std::max(max_nodes, charts.size() + charts.size() / 2);
+  if (node_count(charts, density) > allowed) density.single_below_m = kSmall_m;
+  while (node_count(charts, density) > allowed) density.spacing_m *= 1.1;
+  return density;
 }
 
 /// Barycentric coordinates of the point of a flat triangle that is nearest to p.
@@ -151,6 +175,12 @@ std::vector<LightMapCharts::Site> sites_of(const PlacedTriangles& all, const Lig
     size_t triangle = 0;
     Vec2f uv;
   };
+  if (grid.width == 1 && grid.height == 1) {
+    const size_t largest =
+        *std::max_element(chart.triangles.begin(), chart.triangles.end(),
+                          [&](size_t a, size_t b) { return all.all[a].area_m2 < all.all[b].area_m2; });
+    return {site_at(all.all[largest], grid.offset, largest, Vec2f::Constant(1.0f / 3))};
+  }
   std::vector<Nearest> nearest(size_t{grid.width} * grid.height);
   for (const size_t t : chart.triangles) {
     const std::array<Vec2f, 3>& c = charts.of_triangle[t].corners;
@@ -177,10 +207,9 @@ std::vector<LightMapCharts::Site> sites_of(const PlacedTriangles& all, const Lig
   return sites;
 }
 
-void place(const Chart& chart, const PlacedTriangles& all, LightMapCharts& charts) {
-  LightMapCharts::Grid grid{static_cast<uint32_t>(charts.nodes),
-                            nodes_along(chart.extent_m.x(), charts.spacing_m),
-                            nodes_along(chart.extent_m.y(), charts.spacing_m)};
+void place(const Chart& chart, const PlacedTriangles& all, LightMapCharts::Grid grid,
+           LightMapCharts& charts) {
+  grid.offset = static_cast<uint32_t>(charts.nodes);
   const Vec2f nodes_per_m(grid.width > 1 ? static_cast<float>(grid.width - 1) / chart.extent_m.x() : 0.0f,
                           grid.height > 1 ? static_cast<float>(grid.height - 1) / chart.extent_m.y() : 0.0f);
   for (const size_t t : chart.triangles) {
@@ -209,11 +238,10 @@ LightMapCharts chart_surfaces(const PlacedTriangles& all, double spacing_m, size
   for (std::vector<Chart>& some : of_object) std::move(some.begin(), some.end(), std::back_inserter(charts));
 
   LightMapCharts result;
-  result.spacing_m = spacing_m;
-  const size_t allowed = std::max(max_nodes, charts.size() + charts.size() / 2);
-  while (node_count(charts, result.spacing_m) > allowed) result.spacing_m *= 1.1;
+  const Density density = affordable(charts, spacing_m, max_nodes);
+  result.spacing_m = density.spacing_m;
   result.of_triangle.resize(all.all.size());
-  for (const Chart& chart : charts) place(chart, all, result);
+  for (const Chart& chart : charts) place(chart, all, grid_of(chart, density), result);
 
   std::vector<std::vector<LightMapCharts::Site>> sites(charts.size());
   parallel_pieces(charts.size(), 16, [&](size_t begin, size_t end) {

@@ -36,7 +36,8 @@ struct LightMapCharts {
   double spacing_m = 0;  ///< of the nodes, at most
 };
 
-/// The spacing grows where more than `max_nodes` would be needed (but for one per chart).
+/// Where more than `max_nodes` would be needed, charts below 0.6 m get one node each, then the spacing grows (until
+/// there is little more than one per chart).
 LightMapCharts chart_surfaces(const PlacedTriangles& triangles, double spacing_m, size_t max_nodes);
 
 }  // namespace vsslam

@@ -10,7 +10,9 @@ namespace vsslam {
 
 namespace {
 
-constexpr float kFaint = 1.0f / 500;      // of all light of its group: a source below is left out
+constexpr float kFaint = 1.0f / 500;       // of all light of its group: a source below is left out ...
+constexpr float kFaintOfMany = 1.0f / 40;  // ... or below this where the group has more than kMany of them
+constexpr size_t kMany = 128;
 constexpr float kSunlight_m = 1e4f;       // how far off what shades the sun may be
 constexpr float kAroundSource_m = 0.02f;  // what is nearer to a source than this does not shade it
 constexpr int kMostShadowRays = 12;
@@ -89,7 +91,13 @@ void add_direct_light(const LitScene& scene, size_t begin, size_t end, std::vect
   const RandomStream stream(1, "shadow rays");
   const size_t groups = lights.groups.size();
   ShadowRays rays(scene.raycaster, illuminance);
-  std::vector<float> lux(lights.sources.size()), of_group(groups);
+  std::vector<float> lux(lights.sources.size()), of_group(groups), faint(groups);
+  for (size_t g = 0; g < groups; ++g) {
+    const auto members =
+        std::count_if(lights.sources.begin(), lights.sources.end(),
+                      [g](const LightSource& s) { return static_cast<size_t>(s.group) == g; });
+    faint[g] = static_cast<size_t>(members) > kMany ? kFaintOfMany : kFaint;
+  }
   for (size_t i = begin; i < end; ++i) {
     const LightMapCharts::Site& site = scene.charts.sites[i];
     const Vec3f& normal = scene.triangles.all[site.triangle].normal_world;
@@ -101,7 +109,7 @@ void add_direct_light(const LitScene& scene, size_t begin, size_t end, std::vect
     for (size_t k = 0; k < lux.size(); ++k) {
       const LightSource& source = lights.sources[k];
       const auto group = static_cast<size_t>(source.group);
-      if (!(lux[k] > kFaint * of_group[group])) continue;
+      if (!(lux[k] > faint[group] * of_group[group])) continue;
       const size_t slot = i * groups + group;
       if (source.kind == LightSource::Kind::directional) {
         rays.add(site.position_world, -source.direction_world, kSunlight_m, slot, lux[k]);

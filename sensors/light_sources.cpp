@@ -13,7 +13,7 @@ namespace {
 
 constexpr float kLargestSource_m2 = 1;  // larger luminous surfaces are found by rays
 constexpr float kGroundAgainstSky = 0.15f;
-constexpr size_t kMostSources = 512;  // and so are many small ones
+constexpr size_t kMostSources = 4096;  // and so are very many small ones
 
 LightSource source_of(const Light& light, double level, int group) {
   LightSource s;
