@@ -94,6 +94,11 @@ uint64_t parse_seed(const std::string& text, const std::string& whole) {
 
 }  // namespace
 
+Progress::Style Console::progress_style() const {
+  if (quiet) return Progress::Style::none;
+  return err_is_terminal ? Progress::Style::bar : Progress::Style::lines;
+}
+
 void add_common_options(CLI::App& command, Console& console) {
   command
       .add_option("--threads", console.threads,
@@ -141,6 +146,7 @@ int run_cli(const std::vector<std::string>& arguments, std::ostream& out, std::o
         app.require_subcommand(1);
         app.set_help_all_flag("--help-all", "help of every command");
         add_run_command(app, console, command);
+        add_suite_command(app, console, command);
         add_world_command(app, console, command);
         add_evaluate_command(app, console, command);
         add_optimize_command(app, console, command);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/config.h"
+#include "scenarios/progress.h"
 
 namespace CLI {
 class App;
@@ -30,12 +31,14 @@ struct Console {
 
   /// Text for a person: the answer, unless the answer is JSON.
   std::ostream& text() const { return json ? err : out; }
+  Progress::Style progress_style() const;
 };
 
 /// A command once it is parsed; returns the exit code.
 using Command = std::function<int()>;
 
 void add_run_command(CLI::App& app, Console& console, Command& command);
+void add_suite_command(CLI::App& app, Console& console, Command& command);
 void add_world_command(CLI::App& app, Console& console, Command& command);
 void add_evaluate_command(CLI::App& app, Console& console, Command& command);
 void add_optimize_command(CLI::App& app, Console& console, Command& command);

@@ -7,6 +7,7 @@
 #include "scenarios/cli.h"
 #include "scenarios/library_files.h"
 #include "scenarios/scenario.h"
+#include "scenarios/suite/suite.h"
 
 namespace vsslam {
 
@@ -20,6 +21,14 @@ std::string description_of(const std::string& scenario) {
   }
 }
 
+std::string description_of_suite(const std::string& suite) {
+  try {
+    return load_suite(suite).description;
+  } catch (const InputError& e) {
+    return e.what();
+  }
+}
+
 int list(const Console& console) {
   nlohmann::ordered_json json = {{"scenarios", nlohmann::ordered_json::array()}};
   std::string text = "scenarios\n";
@@ -27,6 +36,13 @@ int list(const Console& console) {
     const std::string description = description_of(name);
     text += fmt::format("  {:<18} {}\n", name, description);
     json["scenarios"].push_back({{"name", name}, {"description", description}});
+  }
+  text += "suites\n";
+  json["suites"] = nlohmann::ordered_json::array();
+  for (const std::string& name : library_names("suites")) {
+    const std::string description = description_of_suite(name);
+    text += fmt::format("  {:<18} {}\n", name, description);
+    json["suites"].push_back({{"name", name}, {"description", description}});
   }
   for (const char* kind : {"worlds", "rigs"}) {
     json[kind] = library_names(kind);
@@ -45,7 +61,7 @@ int list(const Console& console) {
 }  // namespace
 
 void add_list_command(CLI::App& app, Console& console, Command& command) {
-  CLI::App* sub = app.add_subcommand("list", "scenarios, worlds, rigs and methods");
+  CLI::App* sub = app.add_subcommand("list", "scenarios, suites, worlds, rigs and methods");
   add_common_options(*sub, console);
   sub->callback([&console, &command] { command = [&console] { return list(console); }; });
 }

@@ -30,11 +30,6 @@ Scenario resolve(const RunArguments& arguments) {
   return scenario;
 }
 
-Progress::Style progress_style(const Console& console) {
-  if (console.quiet) return Progress::Style::none;
-  return console.err_is_terminal ? Progress::Style::bar : Progress::Style::lines;
-}
-
 // Names what was finished before an exception goes on its way.
 void name_finished(const Runner& runner, std::ostream& err) {
   const std::vector<FinishedRun> runs = runner.finished();
@@ -48,7 +43,7 @@ int run(const RunArguments& arguments, const Console& console) {
   Runner runner(scenario, {.out = console.out_folder, .threads = console.threads});
   try {
     WallClock clock;
-    Progress progress(progress_style(console), console.err, clock, scenario.name);
+    Progress progress(console.progress_style(), console.err, clock, scenario.name);
     runner.run(interrupt_flag(), progress);
   } catch (...) {
     name_finished(runner, console.err);

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "scenarios/oracles/aliases.h"
+
 namespace vsslam {
 
 namespace {
@@ -18,7 +20,10 @@ RigCalibration calibration_of(const Scenario& scenario) {
 }
 
 OdometryRun::OdometryRun(const Scenario& scenario, StageClock* clock)
-    : clock_(clock), odometry_(scenario.slam, calibration_of(scenario), clock) {}
+    : clock_(clock),
+      scan_context_(scenario.slam.loop.scan_context),
+      mount_height_m_(calibration_of(scenario).lidar.mount_height_m),
+      odometry_(scenario.slam, calibration_of(scenario), clock) {}
 
 OdometryChunk OdometryRun::add(std::shared_ptr<const Chunk> chunk) {
   OdometryChunk result{.chunk = std::move(chunk), .scans = {}, .elapsed_ns = {}};
@@ -34,9 +39,19 @@ OdometryChunk OdometryRun::add(std::shared_ptr<const Chunk> chunk) {
       const int64_t start_ns = now_ns(clock_);
       result.scans.push_back(odometry_.add(lidar->scan));
       result.elapsed_ns.push_back(now_ns(clock_) - start_ns);
+      if (result.scans.back().is_key)
+        remember_key(*lidar, result.chunk->scans[result.scans.size() - 1].T_world_base);
     }
   }
   return result;
+}
+
+void OdometryRun::remember_key(const LidarMeasurement& measurement, const SE3& T_world_base) {
+  const StageTimer timer(clock_, "truth");
+  const int key = static_cast<int>(key_scan_truth_.size());
+  key_scan_truth_.push_back(
+      vsslam::key_scan_truth(key, measurement, T_world_base, LoopTruthOptions{}.max_points));
+  true_descriptors_.push_back(true_descriptor(measurement, mount_height_m_, scan_context_));
 }
 
 MappingRun::MappingRun(const Scenario& scenario, Method method, StageClock* clock)
@@ -69,9 +84,7 @@ Belief MappingRun::add(const OdometryScan& scan, const LidarMeasurement& measure
     restarts_ = scan.visual->restarts;
   }
   degeneracy_truth_.push_back(truth.degeneracy);
-  if (report.key >= 0)
-    key_scan_truth_.push_back(
-        vsslam::key_scan_truth(report.key, measurement, truth.T_world_base, LoopTruthOptions{}.max_points));
+  if (scan.is_key) descriptor_example_.add(scan, report);
   return {measurement.scan.end, report.stamp, T_world_map_ * report.T_map_base};
 }
 

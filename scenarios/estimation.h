@@ -7,8 +7,10 @@
 
 #include "scenarios/belief.h"
 #include "scenarios/contact_sheet.h"
+#include "scenarios/descriptor_example.h"
 #include "scenarios/oracles/loop_truth.h"
 #include "scenarios/sensing.h"
+#include "slam/loop/scan_context.h"
 #include "slam/mapping.h"
 #include "slam/odometry.h"
 
@@ -31,11 +33,20 @@ class OdometryRun {
 
   OdometryChunk add(std::shared_ptr<const Chunk> chunk);
   const ContactSheet& pictures() const { return pictures_; }
+  /// Of the key scans, which are the same for all methods.
+  const std::vector<KeyScanTruth>& key_scan_truth() const { return key_scan_truth_; }
+  const std::vector<ScanContext>& true_descriptors() const { return true_descriptors_; }
 
  private:
+  void remember_key(const LidarMeasurement& measurement, const SE3& T_world_base);
+
   StageClock* clock_;
+  ScanContextConfig scan_context_;
+  double mount_height_m_;
   Odometry odometry_;
   ContactSheet pictures_;
+  std::vector<KeyScanTruth> key_scan_truth_;
+  std::vector<ScanContext> true_descriptors_;
 };
 
 /// Not thread-safe; one per method and seed.
@@ -56,7 +67,7 @@ class MappingRun {
   int restarts() const { return restarts_; }
   int64_t images() const { return images_; }
   const std::vector<DegeneracyTruth>& degeneracy_truth() const { return degeneracy_truth_; }
-  const std::vector<KeyScanTruth>& key_scan_truth() const { return key_scan_truth_; }
+  const DescriptorExample& descriptor_example() const { return descriptor_example_; }
 
  private:
   Belief add(const OdometryScan& scan, const LidarMeasurement& measurement, const ScanTruth& truth);
@@ -69,7 +80,7 @@ class MappingRun {
   int restarts_ = 0;
   int64_t images_ = 0;
   std::vector<DegeneracyTruth> degeneracy_truth_;
-  std::vector<KeyScanTruth> key_scan_truth_;
+  DescriptorExample descriptor_example_;
   SE3 T_world_map_;
 };
 

@@ -47,6 +47,7 @@ const std::vector<std::string>& metric_names() {
                                                  "loops.revisits",
                                                  "loops.recall",
                                                  "loops.precision",
+                                                 "loops.aliases",
                                                  "degeneracy.precision",
                                                  "degeneracy.recall",
                                                  "degeneracy.direction_error_deg_median",

@@ -15,6 +15,7 @@ namespace fs = std::filesystem;
 namespace {
 
 fs::path library_folder(std::string_view kind) {
+  if (kind == "suites") return home_folder() / "scenarios" / "suites";
   const std::string room = kind == "rigs" ? "sensors" : std::string(kind);
   return home_folder() / room / "library";
 }

@@ -1,4 +1,4 @@
-// The library that comes with the program: scenarios, worlds and rigs that are known by name.
+// The library that comes with the program: scenarios, suites, worlds and rigs that are known by name.
 #pragma once
 
 #include <filesystem>
@@ -13,7 +13,7 @@ namespace vsslam {
 /// Folder that holds the rooms: the environment variable VSSLAM_HOME, else the folder the program was built from.
 std::filesystem::path home_folder();
 
-/// Names (without .yaml) in the library of a kind, sorted. Kinds: "scenarios", "worlds", "rigs".
+/// Names (without .yaml) in the library of a kind, sorted. Kinds: "scenarios", "suites", "worlds", "rigs".
 std::vector<std::string> library_names(std::string_view kind);
 
 /// File of a library name. Throws InputError with the nearest name.

@@ -15,6 +15,7 @@ namespace vsslam {
 struct Metrics {
   std::string scenario, method;
   uint64_t seed = 0;
+  std::string failure;  ///< why the drive ended early; empty (null in the file): it did not
   double duration_s = 0, path_length_m = 0;
   int64_t scans = 0, images = 0;
   std::optional<double> ate_rmse_m, ate_max_m, rpe_10m_percent, rpe_10m_deg, end_error_m;
@@ -24,6 +25,7 @@ struct Metrics {
   } descriptors;
   struct Loops {
     int64_t candidates = 0, accepted = 0, true_loops = 0, false_loops = 0, revisits = 0;
+    int64_t aliases = 0;  ///< pairs of key scans that look alike but share nothing; the world's, not the method's
     std::optional<double> recall, precision;
   } loops;
   struct Degeneracy {

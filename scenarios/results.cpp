@@ -8,6 +8,7 @@
 #include "scenarios/evaluation/score.h"
 #include "scenarios/evaluation/trajectory_file.h"
 #include "scenarios/map_file.h"
+#include "scenarios/oracles/aliases.h"
 #include "scenarios/result_tables.h"
 
 namespace vsslam {
@@ -33,8 +34,7 @@ Metrics::Degeneracy score_degeneracy_of(const MappingRun& estimation) {
 }
 
 void score_loops(const RunRecord& record, ScoredRun& scored) {
-  const LoopOracle oracle(record.world, record.raycaster, record.estimation.key_scan_truth());
-  scored.loops = oracle.score(record.estimation.mapping().loops());
+  scored.loops = record.facts.oracle.score(record.estimation.mapping().loops());
   Metrics::Loops& loops = scored.metrics.loops;
   loops.candidates = scored.loops.candidates;
   loops.accepted = scored.loops.accepted;
@@ -43,6 +43,7 @@ void score_loops(const RunRecord& record, ScoredRun& scored) {
   loops.revisits = static_cast<int64_t>(scored.loops.revisits.size());
   loops.recall = scored.loops.recall();
   loops.precision = scored.loops.precision();
+  loops.aliases = record.facts.aliases;
 }
 
 void score_trajectories(const RunRecord& record, Metrics& m) {
@@ -62,14 +63,22 @@ void score_trajectories(const RunRecord& record, Metrics& m) {
   if (!map.empty()) m.map_error_mean_m = map_error(map, estimate.T_truth_estimate, record.surface).mean_m;
 }
 
-Scenario scenario_of(const RunRecord& record) {
-  Scenario scenario = record.scenario;
-  scenario.methods = {std::string(method_name(record.estimation.method()))};
-  scenario.seeds = {record.seed};
+}  // namespace
+
+Scenario scenario_of_run(Scenario scenario, Method method, uint64_t seed) {
+  scenario.methods = {std::string(method_name(method))};
+  scenario.seeds = {seed};
   return scenario;
 }
 
-}  // namespace
+// An alias is nearer than the threshold of `vs-slam`, whatever the method of the run: it tells of the world.
+SeedFacts seed_facts(const Scenario& scenario, const World& world, const Raycaster& raycaster,
+                     const OdometryRun& odometry) {
+  LoopOracle oracle(world, raycaster, odometry.key_scan_truth());
+  const auto aliases =
+      find_aliases(oracle, odometry.true_descriptors(), scenario.slam.loop.vs_slam.max_distance).size();
+  return {std::move(oracle), static_cast<int64_t>(aliases), odometry.pictures().png()};
+}
 
 ScoredRun score_run(const RunRecord& record) {
   ScoredRun scored;
@@ -77,6 +86,7 @@ ScoredRun score_run(const RunRecord& record) {
   m.scenario = record.scenario.name;
   m.method = method_name(record.estimation.method());
   m.seed = record.seed;
+  m.failure = record.failure;
   m.duration_s = record.duration_s;
   m.scans = static_cast<int64_t>(record.estimation.reports().size());
   m.images = record.estimation.images();
@@ -91,17 +101,21 @@ ScoredRun score_run(const RunRecord& record) {
 
 void write_results(const fs::path& folder, const RunRecord& record, const ScoredRun& scored) {
   const Mapping& mapping = record.estimation.mapping();
-  write_file(folder / "scenario.yaml", save_config(scenario_of(record)));
+  write_file(folder / "scenario.yaml",
+             save_config(scenario_of_run(record.scenario, record.estimation.method(), record.seed)));
   write_file(folder / "metrics.json", scored.metrics.json());
   write_tum(folder / "truth.tum", record.estimation.truth_world_base());
   write_tum(folder / "estimate.tum", mapping.trajectory_map_base());
   write_tum(folder / "odometry.tum", mapping.trajectory_odom_base());
   if (!record.estimation.vio_start_base().empty())
     write_tum(folder / "vio.tum", record.estimation.vio_start_base());
-  if (const std::string png = record.pictures.png(); !png.empty()) write_file(folder / "camera.png", png);
+  if (!record.facts.camera_png.empty()) write_file(folder / "camera.png", record.facts.camera_png);
   write_file(folder / "scans.csv", scans_csv(record.estimation, scored.loops));
   write_file(folder / "loops.csv", loops_csv(mapping.loops(), scored.loops));
   write_file(folder / "descriptors.csv", descriptors_csv(mapping));
+  const std::string example = record.estimation.descriptor_example().json(
+      calibration_of(record.scenario).lidar.mount_height_m, record.scenario.slam.loop.scan_context);
+  if (!example.empty()) write_file(folder / "descriptor_example.json", example);
   mapping.pose_graph().write_g2o(folder / "pose_graph.g2o");
   write_ply(folder / "map.ply", mapping.map_cloud(record.scenario.map_voxel_m));
 }
@@ -113,6 +127,7 @@ void write_timing(const fs::path& folder, const Timing& timing, const WallClock&
         {"median_ms", s.median_ms}, {"p99_ms", s.p99_ms}, {"count", s.count}, {"total_s", s.total_s}};
   const nlohmann::ordered_json json = {{"real_time_factor", timing.real_time_factor},
                                        {"wall_s", timing.wall_s},
+                                       {"made_by", timing.made_by},
                                        {"peak_rss_mib", peak_rss_mib()},
                                        {"cores", available_cores()},
                                        {"stages", stages}};

@@ -59,8 +59,8 @@ std::string expectations_of(const FinishedRun& run) {
     text += fmt::format("{}  {} = {} ({})  {} seed {}\n", e.pass ? "PASS" : "FAIL", e.metric,
                         e.value ? fmt::format("{:.6g}", *e.value) : "none", e.bound.text(),
                         run.metrics.method, run.seed);
-  if (!run.failure.empty())
-    text += fmt::format("FAIL  {}  {} seed {}\n", run.failure, run.metrics.method, run.seed);
+  if (!run.metrics.failure.empty())
+    text += fmt::format("FAIL  {}  {} seed {}\n", run.metrics.failure, run.metrics.method, run.seed);
   return text;
 }
 

@@ -27,7 +27,6 @@ struct FinishedRun {
   uint64_t seed = 0;
   std::filesystem::path folder{};
   Metrics metrics{};
-  std::string failure{};  ///< why the drive ended early; empty: it did not
   double real_time_factor = 0;
   bool as_expected() const;  ///< the drive ended well and every expectation is met
 };

@@ -29,7 +29,7 @@ struct Scenario {
   RigConfig rig;
   DriveScript drive;
   EventsConfig events;
-  std::vector<std::string> methods{"sc-lvi-sam"};  ///< names, or "all"
+  std::vector<std::string> methods{"vs-slam"};  ///< names, or "all"
   SlamConfig slam;
   std::vector<uint64_t> seeds{1};      ///< of the sensors' noise
   bool closed_loop = false;            ///< the robot drives on the estimate instead of the truth

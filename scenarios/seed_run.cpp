@@ -1,8 +1,11 @@
 #include "scenarios/seed_run.h"
 
 #include <algorithm>
+#include <new>
 #include <utility>
 
+#include "core/errors.h"
+#include "scenarios/fingerprint.h"
 #include "scenarios/pending_folder.h"
 #include "scenarios/report/report.h"
 #include "scenarios/results.h"
@@ -16,8 +19,8 @@ constexpr size_t kQueueScans = 16, kQueueChunks = 4, kQueueMotions = 4;
 
 }  // namespace
 
-SeedRun::SeedRun(const RunContext& context, const std::vector<Method>& methods, uint64_t seed)
-    : context_(context), seed_(seed) {
+SeedRun::SeedRun(RunContext context, const std::vector<Method>& methods, uint64_t seed)
+    : context_(std::move(context)), seed_(seed) {
   for (const Method method : methods) {
     lanes_.push_back(std::make_unique<Lane>());
     lanes_.back()->method = method;
@@ -25,24 +28,79 @@ SeedRun::SeedRun(const RunContext& context, const std::vector<Method>& methods, 
 }
 
 bool SeedRun::finished() const {
-  return std::all_of(lanes_.begin(), lanes_.end(), [](const auto& lane) { return lane->written; });
+  return running_ == 0 &&
+         std::all_of(lanes_.begin(), lanes_.end(), [](const auto& lane) { return lane->ended; });
 }
 
 Step SeedRun::claim() {
-  if (opening_) return {};
-  if (!sensing_) return open();
+  Step step = next_step();
+  if (!step) return {};
+  ++running_;
+  const auto commit = std::move(step.commit);
+  step.commit = [this, commit] {
+    --running_;
+    commit();
+    if (!broken_) return;
+    for (const auto& lane : lanes_)
+      if (!lane->busy && !lane->ended) fail(*lane, *broken_);
+  };
+  return step;
+}
+
+Step SeedRun::next_step() {
+  if (broken_ || opening_) return {};
+  if (!sensing_) return contained(open(), nullptr);
   Lane* fullest = nullptr;
+  bool open_lanes = false;
   for (const auto& lane : lanes_) {
-    if (lane->busy || lane->written) continue;
-    if (lane->queue.empty() && all_located()) return write(*lane);
+    open_lanes |= !lane->ended;
+    if (lane->busy || lane->ended) continue;
+    if (lane->queue.empty() && facts_) return contained(write(*lane), lane.get());
     if (!lane->queue.empty() && (fullest == nullptr || lane->queue.size() > fullest->queue.size()))
       fullest = lane.get();
   }
-  if (fullest != nullptr) return map(*fullest);
-  if (may_locate()) return locate();
-  if (may_sense()) return sense();
-  if (may_drive()) return drive();
+  if (fullest != nullptr) return contained(map(*fullest), fullest);
+  if (!open_lanes || facts_) return {};
+  if (all_located()) return judging_ ? Step{} : contained(judge(), nullptr);
+  if (may_locate()) return contained(locate(), nullptr);
+  if (may_sense()) return contained(sense(), nullptr);
+  if (may_drive()) return contained(drive(), nullptr);
   return {};
+}
+
+// What the step throws ends the run of its lane, or of all lanes of the seed, not the whole program.
+Step SeedRun::contained(Step step, Lane* lane) {
+  if (!context_.on_failed) return step;
+  const auto why = std::make_shared<std::optional<std::string>>();
+  return {.work =
+              [work = std::move(step.work), why] {
+                try {
+                  work();
+                } catch (const ResourceError&) {
+                  throw;
+                } catch (const std::bad_alloc&) {
+                  throw;
+                } catch (const std::exception& e) {
+                  *why = e.what();
+                }
+              },
+          .commit =
+              [this, commit = std::move(step.commit), why, lane] {
+                if (!*why) return commit();
+                if (lane == nullptr) {
+                  broken_ = why->value();
+                } else {
+                  fail(*lane, why->value());
+                }
+              }};
+}
+
+void SeedRun::fail(Lane& lane, const std::string& why) {
+  lane.estimation.reset();
+  lane.queue.clear();
+  lane.busy = false;
+  lane.ended = true;
+  context_.on_failed(lane.method, seed_, why);
 }
 
 Step SeedRun::open() {
@@ -57,12 +115,12 @@ Step SeedRun::open() {
               [this, made] {
                 start_ns_ = sensing_clock_.now_ns();
                 for (const auto& lane : lanes_)
-                  lane->estimation =
-                      std::make_unique<MappingRun>(context_.scenario, lane->method, &lane->clock);
-                made->odometry = std::make_unique<OdometryRun>(context_.scenario, &odometry_clock_);
-                made->driving = std::make_unique<Driving>(context_.scenario, context_.world, &driving_clock_);
+                  lane->estimation = std::make_unique<MappingRun>(scenario(), lane->method, &lane->clock);
+                made->odometry = std::make_unique<OdometryRun>(scenario(), &odometry_clock_);
+                made->driving =
+                    std::make_unique<Driving>(scenario(), context_.place->world(), &driving_clock_);
                 made->sensing =
-                    std::make_unique<Sensing>(context_.scenario, context_.world, seed_, &sensing_clock_);
+                    std::make_unique<Sensing>(scenario(), context_.place->world(), seed_, &sensing_clock_);
               },
           .commit =
               [this, made] {
@@ -76,12 +134,12 @@ Step SeedRun::open() {
 
 // Estimates older than the latency must have been made before the robot drives on.
 Time SeedRun::belief_due() const {
-  return driving_->until() - Duration::from_seconds(context_.scenario.closed_loop_latency_s);
+  return driving_->until() - Duration::from_seconds(scenario().closed_loop_latency_s);
 }
 
 bool SeedRun::may_drive() const {
   if (driving_busy_ || driving_->ended() || motions_.size() >= kQueueMotions) return false;
-  return !context_.scenario.closed_loop || std::all_of(lanes_.begin(), lanes_.end(), [&](const auto& lane) {
+  return !scenario().closed_loop || std::all_of(lanes_.begin(), lanes_.end(), [&](const auto& lane) {
     return lane->consumed >= belief_due();
   });
 }
@@ -93,7 +151,7 @@ bool SeedRun::may_sense() const {
 bool SeedRun::may_locate() const {
   if (odometry_busy_ || chunks_.empty()) return false;
   return std::all_of(lanes_.begin(), lanes_.end(),
-                     [&](const auto& lane) { return lane->queue.size() < kQueueScans; });
+                     [&](const auto& lane) { return lane->ended || lane->queue.size() < kQueueScans; });
 }
 
 bool SeedRun::all_located() const {
@@ -103,7 +161,7 @@ bool SeedRun::all_located() const {
 }
 
 std::optional<Belief> SeedRun::belief() {
-  if (!context_.scenario.closed_loop) return std::nullopt;
+  if (!scenario().closed_loop) return std::nullopt;
   std::deque<Belief>& beliefs = lanes_.front()->beliefs;
   const auto usable = [&](const Belief& b) { return b.available <= belief_due(); };
   while (beliefs.size() > 1 && usable(beliefs[1])) beliefs.pop_front();
@@ -143,7 +201,8 @@ Step SeedRun::locate() {
   return {.work = [this, located, chunk = chunks_.front()] { *located = odometry_->add(chunk); },
           .commit =
               [this, located] {
-                for (const auto& lane : lanes_) lane->queue.push_back(located);
+                for (const auto& lane : lanes_)
+                  if (!lane->ended) lane->queue.push_back(located);
                 chunks_.pop_front();
                 odometry_busy_ = false;
               }};
@@ -157,13 +216,29 @@ Step SeedRun::map(Lane& lane) {
           .commit =
               [this, &lane, located, beliefs] {
                 lane.queue.pop_front();
-                if (context_.scenario.closed_loop)
+                if (scenario().closed_loop)
                   lane.beliefs.insert(lane.beliefs.end(), beliefs->begin(), beliefs->end());
                 const Time until = located->chunk->until;
                 context_.on_progress((until - lane.consumed).seconds(),
                                      static_cast<int64_t>(beliefs->size()));
                 lane.consumed = until;
                 lane.busy = false;
+              }};
+}
+
+Step SeedRun::judge() {
+  judging_ = true;
+  auto facts = std::make_shared<std::unique_ptr<SeedFacts>>();
+  return {.work =
+              [this, facts] {
+                const StageTimer timer(&odometry_clock_, "judge");
+                *facts = std::make_unique<SeedFacts>(
+                    seed_facts(scenario(), context_.place->world(), sensing_->raycaster(), *odometry_));
+              },
+          .commit =
+              [this, facts] {
+                facts_ = std::move(*facts);
+                judging_ = false;
               }};
 }
 
@@ -176,25 +251,23 @@ Step SeedRun::write(Lane& lane) {
                 context_.on_finished(std::move(*result));
                 lane.estimation.reset();
                 lane.busy = false;
-                lane.written = true;
+                lane.ended = true;
               }};
 }
 
 FinishedRun SeedRun::write_result(Lane& lane) {
   lane.estimation->finish();
-  FinishedRun run{.method = lane.method, .seed = seed_};
-  run.folder = result_path(context_.options.out, context_.scenario.name, lane.method, seed_);
-  if (driving_->outcome() == DriveOutcome::stuck || driving_->outcome() == DriveOutcome::collided)
-    run.failure = driving_->outcome_text();
-
-  const RunRecord record{.scenario = context_.scenario,
-                         .world = context_.world,
-                         .raycaster = sensing_->raycaster(),
-                         .surface = context_.surface(),
+  const DriveOutcome outcome = driving_->outcome();
+  const bool ended_early = outcome == DriveOutcome::stuck || outcome == DriveOutcome::collided;
+  const RunRecord record{.scenario = scenario(),
+                         .facts = *facts_,
+                         .surface = context_.place->surface(),
                          .estimation = *lane.estimation,
-                         .pictures = odometry_->pictures(),
                          .seed = seed_,
-                         .duration_s = driving_->until().seconds()};
+                         .duration_s = driving_->until().seconds(),
+                         .failure = ended_early ? driving_->outcome_text() : ""};
+  FinishedRun run{.method = lane.method, .seed = seed_};
+  run.folder = result_path(context_.options.out, scenario().name, lane.method, seed_);
   PendingFolder folder(run.folder);
   {
     StageTimer timer(&lane.clock, "score_and_write");
@@ -208,10 +281,23 @@ FinishedRun SeedRun::write_result(Lane& lane) {
   clock.add(odometry_clock_);
   const double wall_s = static_cast<double>(clock.now_ns() - start_ns_) * 1e-9;
   run.real_time_factor = record.duration_s / wall_s;
-  write_timing(folder.path(), {.wall_s = wall_s, .real_time_factor = run.real_time_factor}, clock);
+  write_timing(
+      folder.path(),
+      {.wall_s = wall_s, .real_time_factor = run.real_time_factor, .made_by = fingerprint(scenario())},
+      clock);
   write_report(folder.path());
   folder.commit();
   return run;
+}
+
+void add_seed_runs(const RunContext& context, const std::vector<Method>& methods, uint64_t seed,
+                   std::vector<std::unique_ptr<Pipeline>>& pipelines) {
+  if (!context.place->scenario().closed_loop) {
+    pipelines.push_back(std::make_unique<SeedRun>(context, methods, seed));
+    return;
+  }
+  for (const Method method : methods)
+    pipelines.push_back(std::make_unique<SeedRun>(context, std::vector{method}, seed));
 }
 
 }  // namespace vsslam

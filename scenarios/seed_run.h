@@ -11,9 +11,10 @@
 
 #include "scenarios/driving.h"
 #include "scenarios/estimation.h"
-#include "scenarios/oracles/map_error.h"
 #include "scenarios/pipeline.h"
+#include "scenarios/results.h"
 #include "scenarios/runner.h"
+#include "scenarios/scenario_world.h"
 #include "scenarios/sensing.h"
 #include "scenarios/wall_clock.h"
 
@@ -21,19 +22,21 @@ namespace vsslam {
 
 /// What all seeds of a run share.
 struct RunContext {
-  const Scenario& scenario;
-  const World& world;
+  std::shared_ptr<ScenarioWorld> place;
   RunOptions options;
-  std::function<const SurfaceDistance&()> surface;  ///< built by the first caller; thread-safe
-  std::function<void(FinishedRun)> on_finished;     ///< called under the schedule's lock
+  // Called under the schedule's lock.
+  std::function<void(FinishedRun)> on_finished;
   std::function<void(double s, int64_t scans)>
       on_progress;  ///< simulated time and scans estimated since the last call
   std::function<void(double expected_s)> on_expected;  ///< simulated, of one run
+  /// What became of a run that threw; the others go on. Empty: an exception ends everything. Lack of memory or
+  /// disk always does.
+  std::function<void(Method, uint64_t seed, const std::string& why)> on_failed;
 };
 
 class SeedRun final : public Pipeline {
  public:
-  SeedRun(const RunContext& context, const std::vector<Method>& methods, uint64_t seed);
+  SeedRun(RunContext context, const std::vector<Method>& methods, uint64_t seed);
 
   Step claim() override;
   bool finished() const override;
@@ -47,14 +50,18 @@ class SeedRun final : public Pipeline {
     std::deque<std::shared_ptr<const OdometryChunk>> queue;
     std::deque<Belief> beliefs;  // closed loop: not yet old enough to steer, and the one that steers
     Time consumed{0};
-    bool busy = false, written = false;
+    bool busy = false, ended = false;  // ended: written or failed
   };
 
+  Step next_step();
+  Step contained(Step step, Lane* lane);
+  void fail(Lane& lane, const std::string& why);
   Step open();
   Step drive();
   Step sense();
   Step locate();
   Step map(Lane& lane);
+  Step judge();
   Step write(Lane& lane);
   bool may_drive() const;
   bool may_sense() const;
@@ -64,7 +71,9 @@ class SeedRun final : public Pipeline {
   std::optional<Belief> belief();
   FinishedRun write_result(Lane& lane);
 
-  const RunContext& context_;
+  const Scenario& scenario() const { return context_.place->scenario(); }
+
+  RunContext context_;
   uint64_t seed_;
   WallClock driving_clock_, sensing_clock_, odometry_clock_;
   int64_t start_ns_ = 0;
@@ -74,8 +83,16 @@ class SeedRun final : public Pipeline {
   std::deque<std::shared_ptr<const Motion>> motions_;  // driven, not yet sensed
   std::deque<std::shared_ptr<const Chunk>> chunks_;    // sensed, not yet located
   Time needed_from_{0};
-  bool opening_ = false, driving_busy_ = false, sensing_busy_ = false, odometry_busy_ = false;
+  std::unique_ptr<SeedFacts> facts_;
+  bool opening_ = false, driving_busy_ = false, sensing_busy_ = false, odometry_busy_ = false,
+       judging_ = false;
+  int running_ = 0;                    // steps
+  std::optional<std::string> broken_;  // what the steps that all methods share threw
   std::vector<std::unique_ptr<Lane>> lanes_;
 };
+
+/// The pipelines of one seed: one for all methods, or in closed loop one for each.
+void add_seed_runs(const RunContext& context, const std::vector<Method>& methods, uint64_t seed,
+                   std::vector<std::unique_ptr<Pipeline>>& pipelines);
 
 }  // namespace vsslam

@@ -6,12 +6,11 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "core/errors.h"
 #include "scenarios/evaluation/score.h"
-#include "scenarios/report/base64.h"
+#include "scenarios/report/page_json.h"
 
 namespace vsslam {
 
@@ -21,24 +20,6 @@ using nlohmann::json;
 
 constexpr size_t kPoses = 4000, kScans = 3000, kMapPoints = 60'000;  // of a page with one result
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
-
-size_t stride_for(size_t size, size_t most) {
-  return std::max<size_t>(1, (size + most - 1) / std::max<size_t>(1, most));
-}
-
-/// Named columns of floats that grow together.
-class Series {
- public:
-  void add(const std::string& name, double value) { columns_[name].push_back(static_cast<float>(value)); }
-  json to_json() const {
-    json object = json::object();
-    for (const auto& [name, values] : columns_) object[name] = base64_array(values);
-    return object;
-  }
-
- private:
-  std::map<std::string, std::vector<float>> columns_;
-};
 
 /// The truth with the path length travelled at each pose, found by stamp.
 class Path {
@@ -272,9 +253,7 @@ json result_json(const StoredResult& result, size_t results) {
 std::string page_data(std::span<const StoredResult> results) {
   json runs = json::array();
   for (const StoredResult& result : results) runs.push_back(result_json(result, results.size()));
-  std::string text = json{{"runs", runs}}.dump(-1, ' ', false, json::error_handler_t::replace);
-  for (size_t at = text.find('<'); at != text.npos; at = text.find('<', at)) text.replace(at, 1, "\\u003c");
-  return text;
+  return script_text({{"runs", runs}});
 }
 
 }  // namespace vsslam

@@ -2,11 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <set>
-#include <stdexcept>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "core/errors.h"
@@ -15,35 +12,12 @@
 #include "scenarios/report/base64.h"
 #include "scenarios/report/page_data.h"
 #include "scenarios/report/page_tables.h"
+#include "scenarios/report/page_template.h"
 #include "scenarios/report/stored_result.h"
 
 namespace vsslam {
 
 namespace {
-
-/// Replaces each {{name}} of the template; a name without a value is our own bug.
-std::string fill(std::string_view text, const std::vector<std::pair<std::string_view, std::string>>& values) {
-  std::string page;
-  for (size_t open = text.find("{{"); open != text.npos; open = text.find("{{")) {
-    const size_t close = text.find("}}", open);
-    const std::string_view name = text.substr(open + 2, close - open - 2);
-    page += text.substr(0, open);
-    const auto value = std::find_if(values.begin(), values.end(),
-                                    [&](const auto& candidate) { return candidate.first == name; });
-    if (value == values.end())
-      throw std::logic_error(fmt::format("the report page has no value {{{{{}}}}}", name));
-    page += value->second;
-    text.remove_prefix(close + 2);
-  }
-  return page += text;
-}
-
-std::string section(std::string_view id, std::string_view title, std::string_view note,
-                    const std::string& content) {
-  if (content.empty()) return {};
-  return fmt::format("<section id=\"{}\">\n<h2>{}</h2>\n<p class=\"note\">{}</p>\n{}</section>\n", id, title,
-                     note, content);
-}
 
 std::string title_of(std::span<const StoredResult> results) {
   if (results.size() == 1) return results[0].name();
@@ -68,7 +42,7 @@ std::string camera_html(const StoredResult& result) {
 
 std::string page(std::span<const StoredResult> results) {
   const bool alone = results.size() == 1;
-  return fill(
+  return fill_page(
       k_page_html,
       {{"title", escape_html(title_of(results))},
        {"style", std::string(k_page_css)},
@@ -76,17 +50,18 @@ std::string page(std::span<const StoredResult> results) {
        {"headline", alone ? headline_html(results[0]) : ""},
        {"figures_above", alone ? "" : figures(results)},
        {"figures_below", alone ? figures(results) : ""},
-       {"camera",
-        section("camera", "What the camera saw", "Images spread over the run, half their size, row by row.",
-                alone ? camera_html(results[0]) : "")},
+       {"camera", section_html("camera", "What the camera saw",
+                               "Images spread over the run, half their size, row by row.",
+                               alone ? camera_html(results[0]) : "")},
        {"loops",
-        section("loops", "Loop candidates",
-                "Every candidate, accepted or not, judged against exact truth. Point at a row to see it on "
-                "the map.",
-                loops_html(results))},
+        section_html(
+            "loops", "Loop candidates",
+            "Every candidate, accepted or not, judged against exact truth. Point at a row to see it on "
+            "the map.",
+            loops_html(results))},
        {"timing",
-        section("timing", "Timing", "Wall clock; the only part of this page that differs between runs.",
-                timing_html(results))},
+        section_html("timing", "Timing", "Wall clock; the only part of this page that differs between runs.",
+                     timing_html(results))},
        {"data", page_data(results)},
        {"script", std::string(k_page_chart_js) + std::string(k_page_map_js) + std::string(k_page_js)}});
 }

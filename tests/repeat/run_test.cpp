@@ -82,7 +82,7 @@ TEST(Repeat, CameraAndVisualInertialOdometryToo) {
   const Scenario scenario = load_scenario("quick_room_vio", {{"max_duration_s", "6"}, {"map_voxel_m", "0.2"}});
   const fs::path one = run_into("camera_1", scenario, 1);
   expect_same(one, run_into("camera_2", scenario, 2));
-  const fs::path folder = one / "quick_room_vio" / "sc-lvi-sam" / "seed_1";
+  const fs::path folder = one / "quick_room_vio" / "vs-slam" / "seed_1";
   EXPECT_TRUE(fs::exists(folder / "vio.tum"));
   const auto metrics = nlohmann::json::parse(read_file(folder / "metrics.json"));
   EXPECT_GT(metrics["images"].get<int>(), 150);
@@ -94,15 +94,15 @@ TEST(Repeat, SavedScenarioGivesTheSameRun) {
   Scenario scenario = short_scenario();
   scenario.seeds = {1, 2};
   const fs::path both = run_into("saved_both", scenario, 2);
-  const fs::path folder = both / "quick_room" / "sc-lvi-sam" / "seed_2";
+  const fs::path folder = both / "quick_room" / "vs-slam" / "seed_2";
   const fs::path again = run_into("saved_again", load_scenario((folder / "scenario.yaml").string()), 1);
-  expect_same(folder, again / "quick_room" / "sc-lvi-sam" / "seed_2");
+  expect_same(folder, again / "quick_room" / "vs-slam" / "seed_2");
 }
 
 TEST(Repeat, AnotherSeedIsAnotherRun) {
   Scenario scenario = short_scenario();
   scenario.seeds = {1, 2};
-  const fs::path out = run_into("seeds", scenario, 2) / "quick_room" / "sc-lvi-sam";
+  const fs::path out = run_into("seeds", scenario, 2) / "quick_room" / "vs-slam";
   EXPECT_NE(read_file(out / "seed_1" / "estimate.tum"), read_file(out / "seed_2" / "estimate.tum"));
 }
 

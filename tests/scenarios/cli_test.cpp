@@ -51,6 +51,9 @@ TEST(Cli, MistypedWordsGetAHint) {
   const Outcome scenario = call({"run", "quick_rom"});
   EXPECT_EQ(scenario.code, kBadInput);
   EXPECT_THAT(scenario.err, HasSubstr("did you mean quick_room?"));
+  const Outcome suite = call({"suite", "smoek"});
+  EXPECT_EQ(suite.code, kBadInput);
+  EXPECT_THAT(suite.err, HasSubstr("did you mean smoke?"));
   const Outcome method = call({"run", "quick_room", "--method", "sc-lvi-smm"});
   EXPECT_EQ(method.code, kBadInput);
   EXPECT_THAT(method.err, HasSubstr("sc-lvi-sam"));
@@ -69,6 +72,11 @@ TEST(Cli, BadInputIsCode2WithOneLine) {
                                                     {"evaluate", "/nowhere/a.tum", "/nowhere/b.tum"},
                                                     {"optimize", "/nowhere.g2o"},
                                                     {"report", "/nowhere"},
+                                                    {"suite"},
+                                                    {"suite", "smoek"},
+                                                    {"suite", "smoke", "--fresh", "--resume"},
+                                                    {"suite", "smoke", "--scenarios", "quick_rom"},
+                                                    {"suite", "smoke", "--set", "nonsense=1"},
                                                     {"world", "corridr"},
                                                     {"world", "room", "--out", "x.obj"},
                                                     {"list", "more"}}) {
@@ -80,7 +88,7 @@ TEST(Cli, BadInputIsCode2WithOneLine) {
 }
 
 TEST(Cli, HelpIsNotAnError) {
-  for (const char* command : {"run", "world", "evaluate", "optimize", "report", "list"}) {
+  for (const char* command : {"run", "suite", "world", "evaluate", "optimize", "report", "list"}) {
     const Outcome outcome = call({command, "--help"});
     EXPECT_EQ(outcome.code, kDone);
     EXPECT_THAT(outcome.out, HasSubstr("--threads"));
