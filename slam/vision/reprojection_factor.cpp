@@ -80,17 +80,21 @@ bool AnchorRayFactor::Evaluate(double const* const* parameters, double* residual
 
 bool DepthFactor::Evaluate(double const* const* parameters, double* residuals, double** jacobians) const {
   const ScaledPoint point(parameters, T_imu_camera_);
-  residuals[0] = weight_ * (parameters[2][2] * depth_m_ - point.y.z());
+  Eigen::Map<Vec2>{residuals} = Vec2(weight_ * (parameters[2][2] * depth_m_ - point.y.z()), 0);
   if (!jacobians) return true;
-  point.put<1>(Eigen::RowVector3d(0, 0, -weight_), parameters[2][2], jacobians);
+  Eigen::Matrix<double, 2, 3> slope = Eigen::Matrix<double, 2, 3>::Zero();
+  slope(0, 2) = -weight_;
+  point.put<2>(slope, parameters[2][2], jacobians);
   if (jacobians[2]) jacobians[2][2] += weight_ * depth_m_;
   return true;
 }
 
 bool AnchorDepthFactor::Evaluate(double const* const* parameters, double* residuals,
                                  double** jacobians) const {
-  residuals[0] = weight_ * (parameters[0][2] * depth_m_ - 1.0);
-  if (jacobians && jacobians[0]) Eigen::Map<Vec3>{jacobians[0]} << 0, 0, weight_ * depth_m_;
+  Eigen::Map<Vec2>{residuals} = Vec2(weight_ * (parameters[0][2] * depth_m_ - 1.0), 0);
+  if (jacobians && jacobians[0])
+    Eigen::Map<Eigen::Matrix<double, 2, 3, Eigen::RowMajor>>{jacobians[0]} << 0, 0, weight_ * depth_m_, 0, 0,
+        0;
   return true;
 }
 
