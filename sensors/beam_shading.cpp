@@ -3,7 +3,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <tuple>
 #include <utility>
 
 #include "sensors/shading.h"
@@ -15,13 +14,12 @@ namespace {
 
 using namespace lanes;
 
-/// A triangle as one picture sees it: what does not change from ray to ray. Coordinates at a point of its plane, origin
+/// A triangle, and what is drawn on as it is (see facets.h), as one picture sees it: what does not change from ray to ray. Coordinates at a point of its plane, origin
 /// + t d, are `at the origin` + t (gradient . d).
 struct Facet {
   const SurfaceRecord& r;
   Vec3f u_gradient, v_gradient, light_x_gradient, light_y_gradient, normal;
   float u, v, light_x, light_y;            ///< at the origin; u, v in texels
-  float least_x, most_x, least_y, most_y;  ///< of the triangle on the light map
   float u_right, u_down, v_right, v_down;  ///< texels per m along the picture's axes
   float plane_right, plane_down;           ///< n.axis / n.(corner - origin)
 
@@ -37,8 +35,6 @@ struct Facet {
     v = r.uv[0][1] * r.height_px + v_gradient.dot(back);
     light_x = r.light[0][0] + light_x_gradient.dot(back);
     light_y = r.light[0][1] + light_y_gradient.dot(back);
-    std::tie(least_x, most_x) = std::minmax({r.light[0][0], r.light[1][0], r.light[2][0]});
-    std::tie(least_y, most_y) = std::minmax({r.light[0][1], r.light[1][1], r.light[2][1]});
     u_right = u_gradient.dot(view.right), u_down = u_gradient.dot(view.down);
     v_right = v_gradient.dot(view.right), v_down = v_gradient.dot(view.down);
     const float height = -normal.dot(back);
@@ -65,8 +61,8 @@ Floats luminance(const Surfaces& s, const Viewpoint& view, const Facet& f, const
                         (f.u + du) * (1 / r.width_px), (f.v + dv) * (1 / r.height_px), footprint);
   const Floats x = f.light_x + t * rays.d.dot(f.light_x_gradient),
                y = f.light_y + t * rays.d.dot(f.light_y_gradient);
-  Floats lux = baked_light(s.illuminance, min(max(x, all(f.least_x)), all(f.most_x)),
-                           min(max(y, all(f.least_y)), all(f.most_y)), Ints{} + r.light_offset,
+  Floats lux = baked_light(s.illuminance, min(max(x, all(0)), all(r.light_high[0])),
+                           min(max(y, all(0)), all(r.light_high[1])), Ints{} + r.light_offset,
                            Ints{} + r.light_stride);
   if (s.headlight_cd > 0) {
     const Floats along_normal = rays.d.dot(f.normal);

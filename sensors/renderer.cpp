@@ -5,6 +5,7 @@
 
 #include "core/ordered_parallel.h"
 #include "sensors/beam.h"
+#include "sensors/facets.h"
 #include "sensors/lanes.h"
 #include "sensors/light_map.h"
 #include "sensors/shading.h"
@@ -60,6 +61,7 @@ struct Renderer::Impl {
     tree = TriangleTree(triangles);
     const LightMapCharts charts = chart_surfaces(triangles, kNodeSpacing_m, kMostNodes);
     records = surface_records(triangles, charts, textures);
+    tree.rename(facets(triangles, records));
     light_map = bake_light_map({triangles, charts, textures, lights, raycaster});
     // Interpolation reads the row below the last one, with weight 0.
     for (const LightMapCharts::Grid& grid : charts.grids) padding = std::max(padding, size_t{grid.width} + 2);

@@ -1,5 +1,7 @@
 #include "sensors/surface_records.h"
 
+#include <algorithm>
+
 namespace vsslam {
 
 namespace {
@@ -14,7 +16,14 @@ Vec3f gradient(const PlacedTriangle& t, float a, float b, float c) {
   return ((e1 * (e22 * db - e12 * dc) + e2 * (e11 * dc - e12 * db)) / det).cast<float>();
 }
 
-SurfaceRecord record_of(const PlacedTriangle& t, const LightMapCharts::Place& place, const Pyramid& pyramid) {
+const LightMapCharts::Grid& grid_of(const LightMapCharts& charts, const LightMapCharts::Place& place) {
+  return *(std::upper_bound(charts.grids.begin(), charts.grids.end(), place.offset,
+                            [](uint32_t offset, const auto& grid) { return offset < grid.offset; }) -
+           1);
+}
+
+SurfaceRecord record_of(const PlacedTriangle& t, const LightMapCharts::Place& place,
+                        const LightMapCharts::Grid& grid, const Pyramid& pyramid) {
   SurfaceRecord r{};
   r.width_px = static_cast<float>(pyramid.width_px);
   r.height_px = static_cast<float>(pyramid.height_px);
@@ -35,6 +44,8 @@ SurfaceRecord record_of(const PlacedTriangle& t, const LightMapCharts::Place& pl
     r.light_x_gradient[i] = gx[i], r.light_y_gradient[i] = gy[i], r.corner[i] = t.corners_world[0][i];
   r.light_offset = static_cast<int32_t>(place.offset);
   r.light_stride = static_cast<int32_t>(place.stride);
+  r.light_high[0] = static_cast<float>(grid.width - 1);
+  r.light_high[1] = static_cast<float>(grid.height - 1);
   return r;
 }
 
@@ -45,8 +56,9 @@ std::vector<SurfaceRecord> surface_records(const PlacedTriangles& triangles, con
   std::vector<SurfaceRecord> records;
   records.reserve(triangles.all.size() + 1);
   for (size_t t = 0; t < triangles.all.size(); ++t)
-    records.push_back(
-        record_of(triangles.all[t], charts.of_triangle[t], textures.of_material(triangles.all[t].material)));
+    records.push_back(record_of(triangles.all[t], charts.of_triangle[t],
+                                grid_of(charts, charts.of_triangle[t]),
+                                textures.of_material(triangles.all[t].material)));
   SurfaceRecord nothing{};
   nothing.width_px = nothing.height_px = 1;
   nothing.levels = nothing.light_stride = 1;

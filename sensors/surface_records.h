@@ -21,11 +21,10 @@ struct alignas(32) SurfaceRecord {
   float light[3][2];                   ///< corners on the light map, in nodes
   int32_t light_offset, light_stride;
   int32_t levels;
-  float light_x_gradient[3];  ///< nodes per m in the world
+  float light_x_gradient[3], light_y_gradient[3];  ///< nodes per m in the world
+  float corner[3];                                 ///< the first, world
+  float light_high[2];                             ///< last node of its chart
   float unused;
-  float light_y_gradient[3];
-  float corner[3];  ///< the first, world
-  float unused_too[2];
 };
 static_assert(sizeof(SurfaceRecord) == 40 * sizeof(float));
 

@@ -173,4 +173,10 @@ TriangleTree::TriangleTree(const PlacedTriangles& triangles) {
   Builder(triangles, *this).node(items);
 }
 
+void TriangleTree::rename(const std::vector<uint32_t>& names) {
+  for (TreeLeaf& leaf : leaves)
+    for (uint32_t& triangle : leaf.triangle)
+      if (triangle < names.size()) triangle = names[triangle];
+}
+
 }  // namespace vsslam

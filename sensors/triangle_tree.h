@@ -16,13 +16,15 @@ struct alignas(32) TreeNode {
 
 struct alignas(32) TreeLeaf {
   float corners[3][3][8];  ///< [corner][axis][triangle]; all the same: no triangle
-  uint32_t triangle[8];    ///< index into PlacedTriangles::all
+  uint32_t triangle[8];    ///< index into PlacedTriangles::all, unless renamed
 };
 
 struct TriangleTree {
   TriangleTree() = default;
   /// Splits where the surface area heuristic is least among 16 places. Triangles without area are left out.
   explicit TriangleTree(const PlacedTriangles& triangles);
+  /// Has beams report names[triangle] instead of the triangle.
+  void rename(const std::vector<uint32_t>& names);
 
   std::vector<TreeNode> nodes;  ///< the first is the root
   std::vector<TreeLeaf> leaves;
