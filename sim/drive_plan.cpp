@@ -110,12 +110,16 @@ class Planner {
     std::vector<Vec2> corners =
         follow.route.empty() ? waypoints(follow, place) : route_corners(follow, place);
     double approach_m = 0;
+    std::vector<Vec2> straight_on;
     if (from) {
-      approach_m = (corners.front() - from->position_m).norm();
-      if (approach_m > kFar_m || (follow.route.empty() && approach_m > kShortest_m))
+      const Vec2 begin = driven_begin(corners, follow.lateral_offset_m);
+      approach_m = (begin - from->position_m).norm();
+      if (approach_m <= (follow.route.empty() ? kShortest_m : kFar_m))
+        approach_m = 0;
+      else if (follow.lateral_offset_m == 0)
         corners.insert(corners.begin(), from->position_m);
       else
-        approach_m = 0;
+        straight_on = {from->position_m, begin};
     }
     if (corners.size() < 2 || !(polyline_length_m(corners) >= kShortest_m))
       throw InputError(
@@ -124,6 +128,11 @@ class Planner {
                              .yaw_rate_radps = 0.75 * scout_.max_yaw_rate_radps,
                              .accel_mps2 = scout_.accel_mps2};
     std::vector<Path> paths;
+    if (!straight_on.empty()) {  // to the line beside the route, which begins there
+      const std::vector<Vec2> samples = resample(straight_on);
+      paths.emplace_back(samples, std::vector<double>(samples.size(), 0.0), limits);
+      approach_m = 0;
+    }
     double before_m = -approach_m;  // arc length on the route where the piece begins
     for (const std::vector<Vec2>& piece : split_at_sharp_corners(corners)) {
       const std::vector<Vec2> samples = resample(piece);
@@ -131,6 +140,12 @@ class Planner {
       before_m += polyline_length_m(piece);
     }
     return paths;
+  }
+
+  static Vec2 driven_begin(const std::vector<Vec2>& corners, double offset_left_m) {
+    if (corners.size() < 2) return corners.front();
+    const Vec2 along = (corners[1] - corners[0]).normalized();
+    return corners.front() + offset_left_m * Vec2(-along.y(), along.x());
   }
 
   std::vector<Vec2> waypoints(const FollowStep& follow, const std::string& place) const {

@@ -112,6 +112,20 @@ TEST(DrivePlan, DrivesToAPathThatBeginsElsewhere) {
   EXPECT_NEAR(path(p, 0).length_m(), 14, 1e-6);
 }
 
+TEST(DrivePlan, BeginsOnTheLineBesideTheRoute) {
+  const std::string lane = "{follow: {route: line, lateral_offset_m: -1.3}}";
+  const DrivePlan once = plan("steps: [" + lane + "]");
+  ASSERT_EQ(once.steps.size(), 1u);  // no detour by the route itself
+  EXPECT_LT((path(once, 0).begin().position_m - Vec2(0, -1.3)).norm(), 1e-9);
+
+  const DrivePlan back =
+      plan("steps: [" + lane + ", {follow: {route: line, direction: reverse, lateral_offset_m: -1.3}}]");
+  ASSERT_EQ(back.steps.size(), 5u);  // there, turn, across, turn, back
+  EXPECT_NEAR(path(back, 2).length_m(), 2.6, 1e-6);
+  EXPECT_NEAR(std::get<PlannedTurn>(back.steps[1]).angle_rad, M_PI / 2, 1e-6);
+  EXPECT_LT((path(back, 4).end().position_m - Vec2(0, 1.3)).norm(), 1e-6);
+}
+
 TEST(DrivePlan, RepeatsLoops) {
   const DrivePlan p =
       plan("steps: [{loop: {times: 3, steps: [{turn: {angle_deg: 90}}, {rest: {duration_s: 2}}]}}]");
