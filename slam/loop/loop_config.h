@@ -53,6 +53,9 @@ struct VerificationConfig {
   /// Clouds whose centroids are at least this far apart at the guess are first moved onto each other; 0:
   /// never.
   double centroid_guess_m = 0;
+  /// ICP also starts where odometry expects the loop. That fit is taken if it is about as good: fitness at most so many
+  /// times that of the first, overlap at least the inverse share. 0: not tried.
+  double prediction_ratio = 0;
   /// How far the loop may be from where odometry expects it: so much, and so much of the way since the match;
   /// 0 and 0: any.
   double max_gap_m = 0, max_gap_share = 0;
@@ -111,9 +114,14 @@ struct VsSlamLoopConfig {
   VirtualDescriptorConfig virtual_descriptors;
   SelectiveMemoryConfig memory;
   /// ICP's fitness is a weak test in corridors, which fit each other: the scan must also overlap with the map,
-  /// and lie where odometry can have drifted to.
-  VerificationConfig verification{
-      .icp = {}, .min_overlap = 0.6, .max_gap_m = 1.0, .max_gap_share = 0.03, .max_gap_rad = 0.35};
+  /// and lie where odometry can have drifted to. Along a street it fits as well a metre further on: of fits alike,
+  /// the one that needs no drift.
+  VerificationConfig verification{.icp = {},
+                                  .min_overlap = 0.6,
+                                  .prediction_ratio = 1.25,
+                                  .max_gap_m = 1.0,
+                                  .max_gap_share = 0.03,
+                                  .max_gap_rad = 0.35};
   double edge_variance = 0.5;  ///< rad^2 and m^2
   double cauchy_scale = 1.0;   ///< of the edge's robust kernel; 0: quadratic
   /// The settings of one of the three methods.

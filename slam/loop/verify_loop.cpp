@@ -17,6 +17,12 @@ SE3 meet(const SE3& T_match_query, const Cloud& source_query, const Cloud& targe
   return {T_match_query.rotation, T_match_query.translation + offset};
 }
 
+/// Of two fits the one from the prediction, unless the other is clearly better.
+bool prefers_prediction(const IcpResult& predicted, const IcpResult& other, double ratio) {
+  if (!predicted.converged || !other.converged) return predicted.converged;
+  return predicted.fitness_m2 <= ratio * other.fitness_m2 && ratio * predicted.overlap >= other.overlap;
+}
+
 /// Length of the odometry's way between two key scans.
 double way_m(const std::vector<KeyScan>& keys, int from, int to) {
   double length_m = 0;
@@ -53,7 +59,12 @@ void verify_loop(const std::vector<KeyScan>& keys, const SE3& T_base_lidar, cons
     return;
   }
   const SE3 guess = meet(record.T_match_query, source_query, target->points(), config.centroid_guess_m);
-  const IcpResult icp = align(source_query, *target, guess, config.icp, config.overlap_distance_m);
+  IcpResult icp = align(source_query, *target, guess, config.icp, config.overlap_distance_m);
+  if (config.prediction_ratio > 0) {
+    const IcpResult predicted =
+        align(source_query, *target, record.T_match_query_predicted, config.icp, config.overlap_distance_m);
+    if (prefers_prediction(predicted, icp, config.prediction_ratio)) icp = predicted;
+  }
   record.icp_run = true;
   record.icp_converged = icp.converged;
   record.icp_iterations = icp.iterations;

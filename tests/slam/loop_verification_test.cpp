@@ -1,0 +1,59 @@
+#include <gtest/gtest.h>
+
+#include "slam/loop/verify_loop.h"
+#include "tests/slam/loop_room.h"
+
+namespace vsslam {
+namespace {
+
+SE3 at(double x_m, double y_m) {
+  return {Quat::Identity(), {x_m, y_m, 1.0}};
+}
+
+// Ten key scans along a corridor, and another one between the fifth and the sixth of them, 0.6 m aside.
+std::vector<KeyScan> keys_in(const TestRoom& room, const SE3& T_map_query) {
+  std::vector<KeyScan> keys;
+  for (int i = 0; i <= 10; ++i) {
+    KeyScan key;
+    key.id = i;
+    key.T_odom_base = key.T_map_base = i < 10 ? at(i, 0) : T_map_query;
+    key.features_lidar = share(scan_room(room, key.T_map_base, 300));
+    keys.push_back(key);
+  }
+  return keys;
+}
+
+// Errors of the accepted pose: along the corridor and across.
+Vec2 verified_errors_m(const TestRoom& room, double prediction_ratio) {
+  const SE3 T_map_query = at(4.4, 0.6);
+  const std::vector<KeyScan> keys = keys_in(room, T_map_query);
+  VerificationConfig config = VsSlamLoopConfig{}.verification;
+  config.prediction_ratio = prediction_ratio;
+  LocalMaps maps({}, SE3());
+  LoopRecord record;
+  record.match = 4;
+  record.query = 10;
+  const SE3 truth = keys[4].T_map_base.inverse() * T_map_query;
+  record.T_match_query = truth * SE3(Quat::Identity(), {0.9, 0.2, 0});  // as a virtual descriptor may say
+  record.T_match_query_predicted = truth * SE3(Quat::Identity(), {0.05, -0.1, 0});
+  verify_loop(keys, SE3(), config, maps, record);
+  EXPECT_TRUE(record.accepted) << record.why;
+  return (record.T_match_query.translation - truth.translation).head<2>().cwiseAbs();
+}
+
+TEST(Verification, OfFitsAlikeTheOneThatNeedsNoDriftIsTaken) {
+  const TestRoom smooth{long_corridor().front()};
+  const Vec2 first_only = verified_errors_m(smooth, 0), both = verified_errors_m(smooth, 1.25);
+  EXPECT_GT(first_only.x(), 0.5);  // a corridor fits a corridor
+  EXPECT_LT(both.x(), 0.15);
+  EXPECT_LT(both.y(), 0.05);
+}
+
+TEST(Verification, WhereTheWallsTellTheFirstFitIsGoodEnough) {
+  const Vec2 errors = verified_errors_m(cluttered_room(), 0);
+  EXPECT_LT(errors.norm(), 0.1);
+  EXPECT_LT(verified_errors_m(cluttered_room(), 1.25).norm(), 0.1);
+}
+
+}  // namespace
+}  // namespace vsslam
