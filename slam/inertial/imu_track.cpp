@@ -26,7 +26,7 @@ ImuTrackLimits track_limits(const InertialConfig& config) {
 void ImuTrack::add(const ImuSample& sample) {
   if (!sample.gyro_radps.allFinite() || !sample.accel_mps2.allFinite()) return;
   if (!samples_.empty() && sample.stamp <= samples_.back().stamp) return;
-  if (doubted_) std::swap(samples_.back(), *doubted_);
+  if (doubted_) samples_.back() = *doubted_;
   doubted_.reset();
   samples_.push_back(sample);
   if (samples_.size() >= 3) remove_spike(samples_.size() - 2);

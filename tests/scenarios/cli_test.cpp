@@ -10,6 +10,7 @@
 #include "core/files.h"
 #include "scenarios/progress.h"
 #include "slam/loop/loop_config.h"
+#include "tests/scenarios/command_line.h"
 #include "tests/scratch.h"
 
 namespace vsslam {
@@ -18,15 +19,6 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-struct Outcome {
-  int code;
-  std::string out, err;
-};
-Outcome call(const std::vector<std::string>& arguments) {
-  std::ostringstream out, err;
-  const int code = run_cli(arguments, out, err);
-  return {code, out.str(), err.str()};
-}
 std::string temporary(const std::string& name, const std::string& text) {
   const std::filesystem::path path = scratch_folder() / name;
   write_file(path, text);

@@ -9,9 +9,9 @@
 
 #include "core/errors.h"
 #include "core/ordered_parallel.h"
-#include "scenarios/cli.h"
 #include "scenarios/suite/suite_runner.h"
 #include "scenarios/wall_clock.h"
+#include "tests/scenarios/command_line.h"
 #include "tests/scenarios/suite_in_scratch.h"
 
 namespace vsslam {
@@ -19,16 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
-
-struct Outcome {
-  int code;
-  std::string out, err;
-};
-Outcome call(const std::vector<std::string>& arguments) {
-  std::ostringstream out, err;
-  const int code = run_cli(arguments, out, err);
-  return {code, out.str(), err.str()};
-}
 
 std::string without_timing_panel(std::string html) {
   const size_t from = html.find("<!-- timing begin -->"), to = html.find("<!-- timing end -->");
