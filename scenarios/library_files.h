@@ -1,4 +1,5 @@
-// The library that comes with the program: scenarios, suites, worlds and rigs that are known by name.
+// The library that comes with the program: scenarios, suites, worlds, rigs and sheets of real robots that are known
+// by name.
 #pragma once
 
 #include <filesystem>
@@ -13,7 +14,8 @@ namespace vsslam {
 /// Folder that holds the rooms: the environment variable VSSLAM_HOME, else the folder the program was built from.
 std::filesystem::path home_folder();
 
-/// Names (without .yaml) in the library of a kind, sorted. Kinds: "scenarios", "suites", "worlds", "rigs".
+/// Names (without .yaml) in the library of a kind, sorted. Kinds: "scenarios", "suites", "worlds", "rigs",
+/// "sheets".
 std::vector<std::string> library_names(std::string_view kind);
 
 /// File of a library name. Throws InputError with the nearest name.
