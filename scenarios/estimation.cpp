@@ -19,11 +19,11 @@ RigCalibration calibration_of(const Scenario& scenario) {
                                   base_height_m(scenario.robot));
 }
 
-OdometryRun::OdometryRun(const Scenario& scenario, StageClock* clock)
+OdometryRun::OdometryRun(const EstimatorSetup& setup, StageClock* clock)
     : clock_(clock),
-      scan_context_(scenario.slam.loop.scan_context),
-      mount_height_m_(calibration_of(scenario).lidar.mount_height_m),
-      odometry_(scenario.slam, calibration_of(scenario), clock) {}
+      scan_context_(setup.slam.loop.scan_context),
+      mount_height_m_(setup.rig.lidar.mount_height_m),
+      odometry_(setup.slam, setup.rig, clock) {}
 
 OdometryChunk OdometryRun::add(std::shared_ptr<const Chunk> chunk) {
   OdometryChunk result{.chunk = std::move(chunk), .scans = {}, .elapsed_ns = {}};
@@ -39,7 +39,7 @@ OdometryChunk OdometryRun::add(std::shared_ptr<const Chunk> chunk) {
       const int64_t start_ns = now_ns(clock_);
       result.scans.push_back(odometry_.add(lidar->scan));
       result.elapsed_ns.push_back(now_ns(clock_) - start_ns);
-      if (result.scans.back().is_key)
+      if (result.scans.back().is_key && result.chunk->has_truth())
         remember_key(*lidar, result.chunk->scans[result.scans.size() - 1].T_world_base);
     }
   }
@@ -54,38 +54,39 @@ void OdometryRun::remember_key(const LidarMeasurement& measurement, const SE3& T
   true_descriptors_.push_back(true_descriptor(measurement, mount_height_m_, scan_context_));
 }
 
-MappingRun::MappingRun(const Scenario& scenario, Method method, StageClock* clock)
-    : method_(method), clock_(clock), mapping_(scenario.slam, calibration_of(scenario), method, clock) {}
+MappingRun::MappingRun(const EstimatorSetup& setup, Method method, StageClock* clock)
+    : method_(method), clock_(clock), mapping_(setup.slam, setup.rig, method, clock) {}
 
 std::vector<Belief> MappingRun::add(const OdometryChunk& chunk) {
-  std::vector<Belief> beliefs;
-  for (const Measurement& measurement : chunk.chunk->measurements) {
+  for (const Measurement& measurement : chunk.chunk->measurements)
     if (std::holds_alternative<CameraMeasurement>(measurement)) ++images_;
-    const auto* lidar = std::get_if<LidarMeasurement>(&measurement);
-    if (lidar == nullptr) continue;
-    const size_t i = beliefs.size();
+  std::vector<Belief> beliefs;
+  for (size_t i = 0; i < chunk.scans.size(); ++i) {
     const int64_t start_ns = now_ns(clock_);
-    beliefs.push_back(add(chunk.scans[i], *lidar, chunk.chunk->scans[i]));
+    if (chunk.chunk->has_truth()) remember_truth(chunk.scans[i].report.stamp, chunk.chunk->scans[i]);
+    beliefs.push_back(add(chunk.scans[i]));
     if (clock_) clock_->record("slam_scan", chunk.elapsed_ns[i] + now_ns(clock_) - start_ns);
   }
   return beliefs;
 }
 
-Belief MappingRun::add(const OdometryScan& scan, const LidarMeasurement& measurement,
-                       const ScanTruth& truth) {
+void MappingRun::remember_truth(Time stamp, const ScanTruth& truth) {
   // The map's origin is the base at the first scan, with z up: what a robot that knows its parking place knows.
   if (reports_.empty())
     T_world_map_ = SE3::from_rpy({0, 0, truth.T_world_base.rpy().z()}, truth.T_world_base.translation);
+  truth_world_base_.push_back({stamp, truth.T_world_base});
+  degeneracy_truth_.push_back(truth.degeneracy);
+}
+
+Belief MappingRun::add(const OdometryScan& scan) {
   reports_.push_back(mapping_.add(scan));
   const ScanReport& report = reports_.back();
-  truth_world_base_.push_back({measurement.scan.stamp, truth.T_world_base});
   if (scan.visual) {
-    vio_start_base_.push_back({measurement.scan.stamp, scan.visual->T_start_base});
+    vio_start_base_.push_back({report.stamp, scan.visual->T_start_base});
     restarts_ = scan.visual->restarts;
   }
-  degeneracy_truth_.push_back(truth.degeneracy);
   if (scan.is_key) descriptor_example_.add(scan, report);
-  return {measurement.scan.end, report.stamp, T_world_map_ * report.T_map_base};
+  return {scan.end, report.stamp, T_world_map_ * report.T_map_base};
 }
 
 void MappingRun::finish() {

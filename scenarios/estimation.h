@@ -19,6 +19,13 @@ namespace vsslam {
 /// What the estimator is told about the robot of a scenario.
 RigCalibration calibration_of(const Scenario& scenario);
 
+/// What an estimator is made of.
+struct EstimatorSetup {
+  SlamConfig slam;
+  RigCalibration rig;
+  double map_voxel_m = 0.1;  ///< of map.ply
+};
+
 /// A chunk with what the odometry made of it.
 struct OdometryChunk {
   std::shared_ptr<const Chunk> chunk;
@@ -29,11 +36,11 @@ struct OdometryChunk {
 /// Not thread-safe; one per seed.
 class OdometryRun {
  public:
-  OdometryRun(const Scenario& scenario, StageClock* clock);
+  OdometryRun(const EstimatorSetup& setup, StageClock* clock);
 
   OdometryChunk add(std::shared_ptr<const Chunk> chunk);
   const ContactSheet& pictures() const { return pictures_; }
-  /// Of the key scans, which are the same for all methods.
+  /// Of the key scans, which are the same for all methods. Empty without truth.
   const std::vector<KeyScanTruth>& key_scan_truth() const { return key_scan_truth_; }
   const std::vector<ScanContext>& true_descriptors() const { return true_descriptors_; }
 
@@ -52,7 +59,7 @@ class OdometryRun {
 /// Not thread-safe; one per method and seed.
 class MappingRun {
  public:
-  MappingRun(const Scenario& scenario, Method method, StageClock* clock);
+  MappingRun(const EstimatorSetup& setup, Method method, StageClock* clock);
 
   /// Returns the beliefs of the chunk's scans.
   std::vector<Belief> add(const OdometryChunk& chunk);
@@ -61,16 +68,19 @@ class MappingRun {
   Method method() const { return method_; }
   const Mapping& mapping() const { return mapping_; }
   const std::vector<ScanReport>& reports() const { return reports_; }
+  /// Of the scans; empty if the chunks have no truth.
   const std::vector<StampedPose>& truth_world_base() const { return truth_world_base_; }
   /// The prior's own way, where it sees; else empty.
   const std::vector<StampedPose>& vio_start_base() const { return vio_start_base_; }
   int restarts() const { return restarts_; }
   int64_t images() const { return images_; }
+  /// Of the scans; empty if the chunks have no truth.
   const std::vector<DegeneracyTruth>& degeneracy_truth() const { return degeneracy_truth_; }
   const DescriptorExample& descriptor_example() const { return descriptor_example_; }
 
  private:
-  Belief add(const OdometryScan& scan, const LidarMeasurement& measurement, const ScanTruth& truth);
+  Belief add(const OdometryScan& scan);
+  void remember_truth(Time stamp, const ScanTruth& truth);
 
   Method method_;
   StageClock* clock_;

@@ -1,6 +1,7 @@
 #include "scenarios/metrics.h"
 
 #include <cmath>
+#include <initializer_list>
 #include <nlohmann/json.hpp>
 
 namespace vsslam {
@@ -13,10 +14,10 @@ Json number(const std::optional<double>& value) {
   return value && std::isfinite(*value) ? Json(*value) : Json(nullptr);
 }
 
-Json to_json(const Metrics& m) {
+Json all_figures(const Metrics& m) {
   return {{"scenario", m.scenario},
           {"method", m.method},
-          {"seed", m.seed},
+          {"seed", m.seed ? Json(*m.seed) : Json(nullptr)},
           {"failure", m.failure.empty() ? Json(nullptr) : Json(m.failure)},
           {"duration_s", m.duration_s},
           {"path_length_m", m.path_length_m},
@@ -49,6 +50,23 @@ Json to_json(const Metrics& m) {
             {"recall", number(m.degeneracy.recall)},
             {"direction_error_deg_median", number(m.degeneracy.direction_error_deg_median)}}},
           {"restarts", m.restarts}};
+}
+
+void erase(Json& json, std::initializer_list<const char*> keys) {
+  for (const char* key : keys) json.erase(key);
+}
+
+Json to_json(const Metrics& m) {
+  Json json = all_figures(m);
+  if (!m.seed) json.erase("seed");
+  if (m.truth == Truth::world) return json;
+  erase(json, {"map_error_mean_m", "degeneracy"});
+  erase(json["loops"], {"revisits", "recall", "aliases"});
+  if (m.truth == Truth::trajectory) return json;
+  erase(json, {"path_length_m", "ate_rmse_m", "ate_max_m", "rpe_10m_percent", "rpe_10m_deg", "end_error_m",
+               "odometry_ate_rmse_m", "vio_ate_rmse_m"});
+  erase(json["loops"], {"true", "false", "precision"});
+  return json;
 }
 
 std::optional<double> find(const Json& json, const std::string& metric) {

@@ -11,11 +11,16 @@
 
 namespace vsslam {
 
-/// A figure that a run may not have (no loop accepted: no precision) is absent, null in the file.
+/// What a run can be compared with: nothing, the robot's trajectory, or everything about a simulated world.
+enum class Truth { none, trajectory, world };
+
+/// A figure that a run may not have (no loop accepted: no precision) is absent, null in the file. What the run's truth
+/// cannot tell has no key in the file.
 struct Metrics {
   std::string scenario, method;
-  uint64_t seed = 0;
-  std::string failure;  ///< why the drive ended early; empty (null in the file): it did not
+  std::optional<uint64_t> seed;  ///< of a simulated run; a recording has no such key
+  Truth truth = Truth::world;
+  std::string failure;  ///< why the run ended early; empty (null in the file): it did not
   double duration_s = 0, path_length_m = 0;
   int64_t scans = 0, images = 0;
   std::optional<double> ate_rmse_m, ate_max_m, rpe_10m_percent, rpe_10m_deg, end_error_m;

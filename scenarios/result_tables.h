@@ -1,15 +1,14 @@
 // The CSV files of a result, by the columns of results_columns.h.
 #pragma once
 
-#include <span>
 #include <string>
 
-#include "scenarios/estimation.h"
+#include "scenarios/results.h"
 
 namespace vsslam {
 
-std::string scans_csv(const MappingRun& estimation, const LoopScore& loops);
-std::string loops_csv(std::span<const LoopRecord> records, const LoopScore& loops);
-std::string descriptors_csv(const Mapping& mapping);
+std::string scans_csv(const RunRecord& record);
+std::string loops_csv(const RunRecord& record);
+std::string descriptors_csv(const RunRecord& record);
 
 }  // namespace vsslam

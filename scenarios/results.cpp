@@ -8,7 +8,6 @@
 #include "scenarios/evaluation/score.h"
 #include "scenarios/evaluation/trajectory_file.h"
 #include "scenarios/map_file.h"
-#include "scenarios/oracles/aliases.h"
 #include "scenarios/result_tables.h"
 
 namespace vsslam {
@@ -33,21 +32,20 @@ Metrics::Degeneracy score_degeneracy_of(const MappingRun& estimation) {
   return {score.precision, score.recall, score.direction_error_deg_median};
 }
 
-void score_loops(const RunRecord& record, ScoredRun& scored) {
-  scored.loops = record.facts.oracle.score(record.estimation.mapping().loops());
-  Metrics::Loops& loops = scored.metrics.loops;
-  loops.candidates = scored.loops.candidates;
-  loops.accepted = scored.loops.accepted;
-  loops.true_loops = scored.loops.true_loops;
-  loops.false_loops = scored.loops.false_loops;
-  loops.revisits = static_cast<int64_t>(scored.loops.revisits.size());
-  loops.recall = scored.loops.recall();
-  loops.precision = scored.loops.precision();
-  loops.aliases = record.facts.aliases;
+Metrics::Loops score_loops(const RunRecord& record) {
+  const LoopScore& score = record.loops;
+  return {.candidates = score.candidates,
+          .accepted = score.accepted,
+          .true_loops = score.true_loops,
+          .false_loops = score.false_loops,
+          .revisits = static_cast<int64_t>(score.revisits.size()),
+          .aliases = record.aliases,
+          .recall = score.recall(),
+          .precision = score.precision()};
 }
 
 void score_trajectories(const RunRecord& record, Metrics& m) {
-  const std::vector<StampedPose>& truth = record.estimation.truth_world_base();
+  const std::span<const StampedPose> truth = record.truth_world_base;
   if (truth.empty()) return;
   const TrajectoryScore estimate = score(record.estimation.mapping().trajectory_map_base(), truth);
   m.path_length_m = estimate.path_length_m;
@@ -59,33 +57,25 @@ void score_trajectories(const RunRecord& record, Metrics& m) {
   m.odometry_ate_rmse_m = score(record.estimation.mapping().trajectory_odom_base(), truth).ate_rmse_m;
   if (!record.estimation.vio_start_base().empty())
     m.vio_ate_rmse_m = score(record.estimation.vio_start_base(), truth).ate_rmse_m;
-  const Cloud map = record.estimation.mapping().map_cloud(record.scenario.map_voxel_m);
-  if (!map.empty()) m.map_error_mean_m = map_error(map, estimate.T_truth_estimate, record.surface).mean_m;
+  const Cloud map = record.estimation.mapping().map_cloud(record.setup.map_voxel_m);
+  if (!map.empty() && record.surface != nullptr)
+    m.map_error_mean_m = map_error(map, estimate.T_truth_estimate, *record.surface).mean_m;
+}
+
+std::vector<StampedPose> shifted(std::span<const StampedPose> trajectory, Duration offset) {
+  std::vector<StampedPose> result(trajectory.begin(), trajectory.end());
+  for (StampedPose& pose : result) pose.stamp = pose.stamp + offset;
+  return result;
 }
 
 }  // namespace
 
-Scenario scenario_of_run(Scenario scenario, Method method, uint64_t seed) {
-  scenario.methods = {std::string(method_name(method))};
-  scenario.seeds = {seed};
-  return scenario;
-}
-
-// An alias is nearer than the threshold of `vs-slam`, whatever the method of the run: it tells of the world.
-SeedFacts seed_facts(const Scenario& scenario, const World& world, const Raycaster& raycaster,
-                     const OdometryRun& odometry) {
-  LoopOracle oracle(world, raycaster, odometry.key_scan_truth());
-  const auto aliases =
-      find_aliases(oracle, odometry.true_descriptors(), scenario.slam.loop.vs_slam.max_distance).size();
-  return {std::move(oracle), static_cast<int64_t>(aliases), odometry.pictures().png()};
-}
-
-ScoredRun score_run(const RunRecord& record) {
-  ScoredRun scored;
-  Metrics& m = scored.metrics;
-  m.scenario = record.scenario.name;
+Metrics score_run(const RunRecord& record) {
+  Metrics m;
+  m.scenario = record.name;
   m.method = method_name(record.estimation.method());
   m.seed = record.seed;
+  m.truth = record.truth;
   m.failure = record.failure;
   m.duration_s = record.duration_s;
   m.scans = static_cast<int64_t>(record.estimation.reports().size());
@@ -93,31 +83,32 @@ ScoredRun score_run(const RunRecord& record) {
   m.restarts = record.estimation.restarts();
   score_trajectories(record, m);
   m.descriptors = score_descriptors(record.estimation.mapping());
-  score_loops(record, scored);
-  m.degeneracy = score_degeneracy_of(record.estimation);
-  m.compare(bounds_for(record.scenario.expect, m.method));
-  return scored;
+  m.loops = score_loops(record);
+  if (record.truth == Truth::world) m.degeneracy = score_degeneracy_of(record.estimation);
+  m.compare(record.bounds);
+  return m;
 }
 
-void write_results(const fs::path& folder, const RunRecord& record, const ScoredRun& scored) {
+void write_results(const fs::path& folder, const RunRecord& record, const Metrics& metrics) {
   const Mapping& mapping = record.estimation.mapping();
-  write_file(folder / "scenario.yaml",
-             save_config(scenario_of_run(record.scenario, record.estimation.method(), record.seed)));
-  write_file(folder / "metrics.json", scored.metrics.json());
-  write_tum(folder / "truth.tum", record.estimation.truth_world_base());
-  write_tum(folder / "estimate.tum", mapping.trajectory_map_base());
-  write_tum(folder / "odometry.tum", mapping.trajectory_odom_base());
-  if (!record.estimation.vio_start_base().empty())
-    write_tum(folder / "vio.tum", record.estimation.vio_start_base());
-  if (!record.facts.camera_png.empty()) write_file(folder / "camera.png", record.facts.camera_png);
-  write_file(folder / "scans.csv", scans_csv(record.estimation, scored.loops));
-  write_file(folder / "loops.csv", loops_csv(mapping.loops(), scored.loops));
-  write_file(folder / "descriptors.csv", descriptors_csv(mapping));
+  const auto write_trajectory = [&](const char* name, std::span<const StampedPose> trajectory) {
+    if (!trajectory.empty()) write_tum(folder / name, shifted(trajectory, record.stamp_offset));
+  };
+  for (const SavedText& saved : record.saved) write_file(folder / saved.name, saved.text);
+  write_file(folder / "metrics.json", metrics.json());
+  write_trajectory("truth.tum", record.truth_world_base);
+  write_trajectory("estimate.tum", mapping.trajectory_map_base());
+  write_trajectory("odometry.tum", mapping.trajectory_odom_base());
+  write_trajectory("vio.tum", record.estimation.vio_start_base());
+  if (!record.camera_png.empty()) write_file(folder / "camera.png", record.camera_png);
+  write_file(folder / "scans.csv", scans_csv(record));
+  write_file(folder / "loops.csv", loops_csv(record));
+  write_file(folder / "descriptors.csv", descriptors_csv(record));
   const std::string example = record.estimation.descriptor_example().json(
-      calibration_of(record.scenario).lidar.mount_height_m, record.scenario.slam.loop.scan_context);
+      record.setup.rig.lidar.mount_height_m, record.setup.slam.loop.scan_context);
   if (!example.empty()) write_file(folder / "descriptor_example.json", example);
   mapping.pose_graph().write_g2o(folder / "pose_graph.g2o");
-  write_ply(folder / "map.ply", mapping.map_cloud(record.scenario.map_voxel_m));
+  write_ply(folder / "map.ply", mapping.map_cloud(record.setup.map_voxel_m));
 }
 
 void write_timing(const fs::path& folder, const Timing& timing, const WallClock& clock) {
@@ -132,10 +123,6 @@ void write_timing(const fs::path& folder, const Timing& timing, const WallClock&
                                        {"cores", available_cores()},
                                        {"stages", stages}};
   write_file(folder / "timing.json", json.dump(2) + "\n");
-}
-
-fs::path result_path(const fs::path& out, const std::string& scenario, Method method, uint64_t seed) {
-  return out / scenario / method_name(method) / fmt::format("seed_{}", seed);
 }
 
 }  // namespace vsslam

@@ -2,7 +2,10 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "scenarios/estimation.h"
 #include "scenarios/metrics.h"
@@ -11,36 +14,34 @@
 
 namespace vsslam {
 
-/// What the results of one seed share.
-struct SeedFacts {
-  LoopOracle oracle;
-  int64_t aliases = 0;
-  std::string camera_png;  ///< empty without a camera
+/// A file that is saved with a result as it is.
+struct SavedText {
+  std::string name, text;
 };
-/// `raycaster` must outlive them.
-SeedFacts seed_facts(const Scenario& scenario, const World& world, const Raycaster& raycaster,
-                     const OdometryRun& odometry);
 
-/// One run, finished.
+/// One run, finished: what there is to score and to write of it.
 struct RunRecord {
-  const Scenario& scenario;  ///< of the whole experiment; the saved one names this method and seed only
-  const SeedFacts& facts;
-  const SurfaceDistance& surface;
+  std::string name;                ///< of the scenario or the recording
+  std::optional<uint64_t> seed{};  ///< of a simulated run
+  const EstimatorSetup& setup;
   const MappingRun& estimation;
-  uint64_t seed = 0;
+  Truth truth = Truth::none;
+  std::span<const StampedPose> truth_world_base{};  ///< at any stamps; empty without truth
+  const SurfaceDistance* surface = nullptr;         ///< with truth of the world
+  LoopScore loops{};                                ///< one judgement per LoopRecord of the estimation
+  int64_t aliases = 0;
+  MetricBounds bounds{};
+  std::string camera_png{};  ///< empty without a camera
+  std::vector<SavedText> saved{};
+  Duration stamp_offset{};  ///< added to the samples' stamps where stamps are written
   double duration_s = 0;
-  std::string failure{};  ///< why the drive ended early; empty: it did not
+  std::string failure{};  ///< why the run ended early; empty: it did not
 };
 
-/// A record with its scores.
-struct ScoredRun {
-  Metrics metrics;
-  LoopScore loops;
-};
-ScoredRun score_run(const RunRecord& record);
+Metrics score_run(const RunRecord& record);
 
 /// Every file of the result but timing.json and report.html.
-void write_results(const std::filesystem::path& folder, const RunRecord& record, const ScoredRun& scored);
+void write_results(const std::filesystem::path& folder, const RunRecord& record, const Metrics& metrics);
 
 /// timing.json.
 struct Timing {
@@ -48,12 +49,5 @@ struct Timing {
   std::string made_by{};  ///< fingerprint()
 };
 void write_timing(const std::filesystem::path& folder, const Timing& timing, const WallClock& clock);
-
-/// What is saved beside the result of one method and seed.
-Scenario scenario_of_run(Scenario scenario, Method method, uint64_t seed);
-
-/// <out>/<scenario>/<method>/seed_<n>
-std::filesystem::path result_path(const std::filesystem::path& out, const std::string& scenario,
-                                  Method method, uint64_t seed);
 
 }  // namespace vsslam

@@ -7,7 +7,7 @@
 
 namespace vsslam {
 
-/// One row per scan. Eigenvalues ascend; `weak` is the eigenvector of the smallest one, in the lidar frame.
+/// One row per scan. A recording has no truth of the world: its columns true_* and revisit_* are empty. Eigenvalues ascend; `weak` is the eigenvector of the smallest one, in the lidar frame.
 /// Blocks: r rotation, t translation. The columns true_* are the same from noise-free points with true normals.
 inline constexpr std::array kScanColumns = {
     "scan", "stamp", "key",  // key: id of the key scan made from this scan, -1: none
@@ -35,8 +35,9 @@ inline constexpr std::array kLoopColumns = {
     "accepted", "why",
     "x", "y", "z", "qx", "qy", "qz", "qw",           // T_match_query, base frames
     "predicted_x", "predicted_y", "predicted_z", "predicted_qx", "predicted_qy", "predicted_qz", "predicted_qw",
-    "true_error_m", "true_error_deg", "true_overlap",
-    "verdict",               // accepted: "true" or "false"; not accepted: "rejected"
+    "true_error_m", "true_error_deg",                // empty without truth
+    "true_overlap",                                  // empty without truth of the world
+    "verdict",               // accepted: "true" or "false", empty without truth; not accepted: "rejected"
 };
 
 /// One row per stored descriptor; the pose is T_map_base of its key scan in the final estimate.

@@ -23,7 +23,7 @@ Row header() {
 Row row(const FinishedRun& run) {
   const Metrics& m = run.metrics;
   return {m.method,
-          fmt::format("{}", m.seed),
+          m.seed ? fmt::format("{}", *m.seed) : "-",
           number(m.duration_s, 1),
           number(m.path_length_m, 1),
           number(m.ate_rmse_m, 3),

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "scenarios/pending_folder.h"
-#include "scenarios/seed_run.h"
+#include "scenarios/simulated_drive.h"
 
 namespace vsslam {
 
@@ -18,7 +18,7 @@ struct Runner::Impl {
   std::vector<Method> methods;
   std::vector<FinishedRun> finished;
 
-  RunContext context(Progress& progress, ProgressState& state);
+  RunEvents events(Progress& progress, ProgressState& state);
 };
 
 Runner::Runner(const Scenario& scenario, const RunOptions& options) : impl_(std::make_unique<Impl>()) {
@@ -30,10 +30,8 @@ Runner::Runner(const Scenario& scenario, const RunOptions& options) : impl_(std:
 
 Runner::~Runner() = default;
 
-RunContext Runner::Impl::context(Progress& progress, ProgressState& state) {
-  return {.place = place,
-          .options = options,
-          .on_finished =
+RunEvents Runner::Impl::events(Progress& progress, ProgressState& state) {
+  return {.on_finished =
               [this, &progress, &state](FinishedRun run) {
                 ++state.finished_runs;
                 if (!run.metrics.failure.empty()) progress.note(run.metrics.failure);
@@ -57,9 +55,10 @@ void Runner::run(const std::atomic<bool>& stop, Progress& progress) {
   ProgressState state;
   const std::vector<uint64_t>& seeds = impl_->place->scenario().seeds;
   state.runs = static_cast<int>(impl_->methods.size() * seeds.size());
-  const RunContext context = impl_->context(progress, state);
+  const RunEvents events = impl_->events(progress, state);
   std::vector<std::unique_ptr<Pipeline>> pipelines;
-  for (const uint64_t seed : seeds) add_seed_runs(context, impl_->methods, seed, pipelines);
+  for (const uint64_t seed : seeds) 
+    add_seed_runs(impl_->place, impl_->options.out, impl_->methods, seed, events, pipelines);
   const auto link = [this] {
     if (!impl_->finished.empty()) link_latest(impl_->options.out, finished().back().folder);
   };

@@ -18,11 +18,13 @@ struct ScanTruth {
   DegeneracyTruth degeneracy;
 };
 
-/// Everything whose acquisition ended in one stretch of simulated time.
+/// Everything whose acquisition ended in one stretch of time. From a recording it has no truth: `scans` is empty,
+/// and of the measurements only the samples are filled.
 struct Chunk {
   Time until;
   std::vector<Measurement> measurements;  ///< in order of the end of their acquisition
   std::vector<ScanTruth> scans;           ///< one per LidarMeasurement, same order
+  bool has_truth() const { return !scans.empty(); }
 };
 
 /// Not thread-safe; one per seed.

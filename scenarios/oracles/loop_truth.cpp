@@ -79,6 +79,8 @@ std::string_view verdict_name(LoopVerdict verdict) {
       return "true";
     case LoopVerdict::accepted_false:
       return "false";
+    case LoopVerdict::accepted_unknown:
+      return "";
     default:
       return "rejected";
   }
@@ -91,7 +93,37 @@ std::optional<double> LoopScore::recall() const {
 }
 
 std::optional<double> LoopScore::precision() const {
-  return share(true_loops, accepted);
+  return share(true_loops, true_loops + false_loops);
+}
+
+LoopJudgement judge_loop(const LoopRecord& record, const std::optional<SE3>& T_world_query,
+                         const std::optional<SE3>& T_world_match, const LoopTruthOptions& options) {
+  LoopJudgement judgement;
+  judgement.verdict = record.accepted ? LoopVerdict::accepted_unknown : LoopVerdict::rejected;
+  if (!T_world_query || !T_world_match) return judgement;
+  const SE3 T_match_query = T_world_match->inverse() * *T_world_query;
+  const SE3 error = T_match_query.inverse() * record.T_match_query;
+  judgement.error_m = error.translation.norm();
+  judgement.error_deg = error.angle() * 180 / std::numbers::pi;
+  const bool is_true =
+      judgement.error_m <= options.true_within_m && judgement.error_deg <= options.true_within_deg;
+  if (record.accepted)
+    judgement.verdict = is_true ? LoopVerdict::accepted_true : LoopVerdict::accepted_false;
+  return judgement;
+}
+
+LoopScore score_loops(std::span<const LoopRecord> records,
+                      const std::function<std::optional<SE3>(int key)>& T_world_base) {
+  LoopScore result;
+  result.candidates = static_cast<int>(records.size());
+  for (const LoopRecord& record : records) {
+    result.judgements.push_back(judge_loop(record, T_world_base(record.query), T_world_base(record.match)));
+    const LoopVerdict verdict = result.judgements.back().verdict;
+    result.accepted += record.accepted;
+    result.true_loops += verdict == LoopVerdict::accepted_true;
+    result.false_loops += verdict == LoopVerdict::accepted_false;
+  }
+  return result;
 }
 
 LoopOracle::LoopOracle(const World& world, const Raycaster& raycaster, std::vector<KeyScanTruth> keys,
@@ -176,19 +208,10 @@ std::optional<Revisit> LoopOracle::revisit(int key) const {
 }
 
 LoopJudgement LoopOracle::judge(const LoopRecord& record) const {
-  const SE3& T_world_query = keys_.at(static_cast<size_t>(record.query)).T_world_base;
-  const SE3& T_world_match = keys_.at(static_cast<size_t>(record.match)).T_world_base;
-  const SE3 T_match_query = T_world_match.inverse() * T_world_query;
-  const SE3 error = T_match_query.inverse() * record.T_match_query;
-  LoopJudgement judgement{.error_m = error.translation.norm(),
-                          .error_deg = error.angle() * 180 / std::numbers::pi,
-                          .overlap = overlap(record.query, record.match),
-                          .verdict = LoopVerdict::rejected};
-  if (record.accepted) {
-    const bool is_true =
-        judgement.error_m <= options_.true_within_m && judgement.error_deg <= options_.true_within_deg;
-    judgement.verdict = is_true ? LoopVerdict::accepted_true : LoopVerdict::accepted_false;
-  }
+  LoopJudgement judgement =
+      judge_loop(record, keys_.at(static_cast<size_t>(record.query)).T_world_base,
+                 keys_.at(static_cast<size_t>(record.match)).T_world_base, options_);
+  judgement.overlap = overlap(record.query, record.match);
   return judgement;
 }
 

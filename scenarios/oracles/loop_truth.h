@@ -1,6 +1,7 @@
 // Truth of loops: which accepted edges are true, which places are seen again, which were missed.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -35,13 +36,13 @@ struct LoopTruthOptions {
 KeyScanTruth key_scan_truth(int key, const LidarMeasurement& measurement, const SE3& T_world_base,
                             size_t max_points);
 
-enum class LoopVerdict { accepted_true, accepted_false, rejected };
-std::string_view verdict_name(LoopVerdict verdict);  ///< "true", "false", "rejected"
+enum class LoopVerdict { accepted_true, accepted_false, accepted_unknown, rejected };
+std::string_view verdict_name(LoopVerdict verdict);  ///< "true", "false", "", "rejected"
 
-/// Truth of one LoopRecord.
+/// Truth of one LoopRecord, as far as there is any.
 struct LoopJudgement {
-  double error_m = 0, error_deg = 0;  ///< of T_match_query against the truth
-  double overlap = 0;                 ///< true share of the query's points that the match's pose sees
+  std::optional<double> error_m, error_deg;  ///< of T_match_query against the truth
+  std::optional<double> overlap;             ///< true share of the query's points that the match's pose sees
   LoopVerdict verdict = LoopVerdict::rejected;
 };
 
@@ -59,9 +60,18 @@ struct LoopScore {
   std::vector<Revisit> revisits;          ///< in order of key
   /// closed / revisits; absent without revisits.
   std::optional<double> recall() const;
-  /// true / accepted; absent without accepted edges.
+  /// true / (true + false); absent without accepted edges.
   std::optional<double> precision() const;
 };
+
+/// The verdict on one candidate; without both poses an accepted one stays unknown.
+LoopJudgement judge_loop(const LoopRecord& record, const std::optional<SE3>& T_world_query,
+                         const std::optional<SE3>& T_world_match, const LoopTruthOptions& options = {});
+
+/// Judges the candidates where nothing is known but the robot's true poses, by key scan, or not even those: no
+/// overlap, no revisits.
+LoopScore score_loops(std::span<const LoopRecord> records,
+                      const std::function<std::optional<SE3>(int key)>& T_world_base);
 
 /// Ray casts happen in the raycaster's present state (objects as the last commit left them). Glass does not
 /// hide.

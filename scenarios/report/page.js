@@ -38,13 +38,14 @@ function follow(key) {
 }
 
 function errorSeries(x, y) {
-  if (several) return RUNS.map(run => line(run.estimate, x, y, run.short, run.color));
+  if (several) return RUNS.filter(run => run.estimate.error_m).map(run => line(run.estimate, x, y, run.short, run.color));
   const series = [line(shown.estimate, x, y, 'estimate', '--estimate')];
   if (shown.odometry) series.unshift(line(shown.odometry, x, y, 'odometry', '--odometry', {dashed: true}));
   return series;
 }
 
 function drawErrors() {
+  if (!RUNS.some(run => run.estimate.error_m)) return;
   for (const [key, xTitle, suffix] of [['t', 'time (s)', 'time'], ['d', 'distance travelled (m)', 'distance']]) {
     const onPoint = follow(key);
     drawChart(figure(`error-${suffix}`), {title: 'Position error', unit: 'm', xTitle, series: errorSeries(key, 'error_m'), onPoint});

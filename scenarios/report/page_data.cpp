@@ -21,7 +21,7 @@ using nlohmann::json;
 constexpr size_t kPoses = 4000, kScans = 3000, kMapPoints = 60'000;  // of a page with one result
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 
-/// The truth with the path length travelled at each pose, found by stamp.
+/// The truth, or without it the estimate, with the path length travelled at each pose, found by stamp.
 class Path {
  public:
   explicit Path(const PoseTrajectory& truth) : truth_(truth), travelled_m_(truth.size(), 0.0) {
@@ -70,6 +70,19 @@ json estimate_json(const PoseTrajectory& estimate, const PoseTrajectory& truth, 
     series.add("y", T_world_base.translation.y());
     series.add("error_m", scored.errors_m[k]);
     series.add("error_deg", (truth[j].pose.inverse() * T_world_base).angle() * 180 / std::numbers::pi);
+  }
+  return series.to_json();
+}
+
+/// A trajectory that there is no truth for, as it is.
+json plain_json(const PoseTrajectory& trajectory, const Path& path, size_t most) {
+  Series series;
+  const size_t stride = stride_for(trajectory.size(), most);
+  for (size_t i = 0; i < trajectory.size(); i += stride) {
+    series.add("t", path.time_s(trajectory[i].stamp));
+    series.add("d", path.travelled_m(trajectory[i].stamp));
+    series.add("x", trajectory[i].pose.translation.x());
+    series.add("y", trajectory[i].pose.translation.y());
   }
   return series.to_json();
 }
@@ -173,12 +186,13 @@ json place(const SE3& T_world_base) {
   return {T_world_base.translation.x(), T_world_base.translation.y()};
 }
 
-/// Accepted edges and missed revisits as lines between true places.
+/// Accepted edges and missed revisits as lines between true places, without truth between estimated ones.
 json loops_json(const StoredResult& result, const Path& path) {
   json lines = json::array();
   const CsvTable& loops = *result.loops;
   for (size_t row = 0; row < loops.rows(); ++row) {
-    const std::string& verdict = loops.text(row, "verdict");
+    const std::string& judged = loops.text(row, "verdict");
+    const std::string verdict = judged.empty() ? "accepted" : judged;
     const SE3& query = path.T_world_base(stamp_of(loops, result, "loops.csv", row, "query_stamp"));
     const SE3& match = path.T_world_base(stamp_of(loops, result, "loops.csv", row, "match_stamp"));
     lines.push_back({{"kind", verdict},
@@ -223,21 +237,32 @@ json stored_json(const StoredResult& result, const Path& path) {
   return series.to_json();
 }
 
-json result_json(const StoredResult& result, size_t results) {
-  const Path path(result.truth);
-  const std::pair<std::string, std::string> names = {(result.path / "estimate.tum").string(),
-                                                     (result.path / "truth.tum").string()};
-  const TrajectoryScore scored = score(result.estimate, result.truth, {}, names);
-  json run = {{"name", result.name()}, {"scenario", result.scenario}};
-  run["truth"] = truth_json(result.truth, kPoses / results);
-  run["estimate"] = estimate_json(result.estimate, result.truth, path, scored, kPoses / results);
-  if (!result.odometry.empty()) {
-    const TrajectoryScore odometry =
-        score(result.odometry, result.truth, {}, {(result.path / "odometry.tum").string(), names.second});
-    run["odometry"] = estimate_json(result.odometry, result.truth, path, odometry, kPoses / results);
+void add_trajectories(json& run, const StoredResult& result, const Path& path, size_t results) {
+  const size_t most = kPoses / results;
+  if (!result.has_truth()) {
+    run["estimate"] = plain_json(result.estimate, path, most);
+    if (!result.odometry.empty()) run["odometry"] = plain_json(result.odometry, path, most);
+    if (result.points_map) run["map"] = map_json(*result.points_map, SE3(), kMapPoints / results);
+    return;
   }
+  const std::string truth_name = (result.path / "truth.tum").string();
+  const auto scored = [&](const PoseTrajectory& trajectory, const char* file) {
+    return score(trajectory, result.truth, {}, {(result.path / file).string(), truth_name});
+  };
+  const TrajectoryScore estimate = scored(result.estimate, "estimate.tum");
+  run["truth"] = truth_json(result.truth, most);
+  run["estimate"] = estimate_json(result.estimate, result.truth, path, estimate, most);
+  if (!result.odometry.empty())
+    run["odometry"] =
+        estimate_json(result.odometry, result.truth, path, scored(result.odometry, "odometry.tum"), most);
   if (result.points_map)
-    run["map"] = map_json(*result.points_map, scored.alignment.T_truth_estimate, kMapPoints / results);
+    run["map"] = map_json(*result.points_map, estimate.T_truth_estimate, kMapPoints / results);
+}
+
+json result_json(const StoredResult& result, size_t results) {
+  const Path path(result.has_truth() ? result.truth : result.estimate);
+  json run = {{"name", result.name()}, {"scenario", result.scenario}};
+  add_trajectories(run, result, path, results);
   if (result.scans && result.scans->rows() > 0) {
     run["scans"] = scans_json(result, path, kScans / results);
     run["weak"] = weak_json(result, path);

@@ -11,6 +11,7 @@ const LAYERS = [
   {id: 'weak', name: 'Degenerate directions', color: 'var(--weak)', has: run => run.weak && run.weak.x && run.weak.x.length},
   {id: 'stored', name: 'Stored descriptors', swatch: 'dot', color: 'var(--stored)', has: run => run.stored},
   {id: 'missed', name: 'Missed revisits', swatch: 'dashed', color: 'var(--missed)', has: run => run.missed && run.missed.length},
+  {id: 'accepted', name: 'Loops', color: 'var(--good)', has: run => run.loops && run.loops.some(l => l.kind === 'accepted')},
   {id: 'true', name: 'True loops', color: 'var(--good)', has: run => run.loops && run.loops.some(l => l.kind === 'true')},
   {id: 'false', name: 'False loops', color: 'var(--bad)', has: run => run.loops && run.loops.some(l => l.kind === 'false')},
 ];
@@ -39,7 +40,7 @@ class MapView {
     let box = [Infinity, Infinity, -Infinity, -Infinity];
     const extend = (x, y) => { box = [Math.min(box[0], x), Math.min(box[1], y), Math.max(box[2], x), Math.max(box[3], y)]; };
     const {truth, estimate} = this.run;
-    truth.x.forEach((x, i) => extend(x, truth.y[i]));
+    if (truth) truth.x.forEach((x, i) => extend(x, truth.y[i]));
     estimate.x.forEach((x, i) => extend(x, estimate.y[i]));
     const margin = 4, width = box[2] - box[0] + 2 * margin, height = box[3] - box[1] + 2 * margin;
     this.scale = Math.min(this.width / width, this.height / height);
@@ -223,6 +224,7 @@ class MapView {
   }
 
   draw_missed(g) { for (const line of this.run.missed) this.drawLine(g, line, css('--missed'), 1.5, [4, 3]); }
+  draw_accepted(g) { for (const line of this.run.loops) if (line.kind === 'accepted') this.drawLine(g, line, css('--good'), 2, []); }
   draw_true(g) { for (const line of this.run.loops) if (line.kind === 'true') this.drawLine(g, line, css('--good'), 2, []); }
   draw_false(g) { for (const line of this.run.loops) if (line.kind === 'false') this.drawLine(g, line, css('--bad'), 2, []); }
 

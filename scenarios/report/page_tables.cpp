@@ -114,8 +114,9 @@ std::string figure_row(std::span<const StoredResult> results, const Figure& figu
 std::string column_heads(std::span<const StoredResult> results) {
   std::string heads;
   for (const StoredResult& result : results)
-    heads += fmt::format("<th scope=\"col\">{}<small>{} · seed {}</small></th>", escape_html(result.method),
-                         escape_html(result.scenario), escape_html(result.seed));
+    heads += fmt::format("<th scope=\"col\">{}<small>{}{}</small></th>", escape_html(result.method),
+                         escape_html(result.scenario),
+                         result.seed.empty() ? "" : " · seed " + escape_html(result.seed));
   return heads;
 }
 
@@ -181,7 +182,8 @@ constexpr LoopColumn kShownLoopColumns[] = {
 };
 
 std::string loop_row(const CsvTable& loops, size_t row) {
-  const std::string& verdict = loops.text(row, "verdict");
+  const std::string& judged = loops.text(row, "verdict");
+  const std::string verdict = judged.empty() ? "accepted" : judged;
   const char* tone = verdict == "true" ? "good" : verdict == "false" ? "bad" : "quiet";
   std::string html = fmt::format(
       "<tr data-row=\"{}\" data-verdict=\"{}\"><td class=\"text\"><span class=\"chip {}\">{}"

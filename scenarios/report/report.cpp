@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <set>
 #include <string>
 #include <vector>
@@ -40,8 +41,16 @@ std::string camera_html(const StoredResult& result) {
                      base64(result.camera_png));
 }
 
+constexpr const char* kAligned =
+    "Estimate and odometry are each aligned to the truth (SE(3), least squares over all poses). Loops are drawn "
+    "between true places: a\ntrue one is short, a false one joins places that are apart.";
+constexpr const char* kNotAligned =
+    "There is no truth: estimate and odometry begin at the same pose, and loops are drawn between estimated places.";
+
 std::string page(std::span<const StoredResult> results) {
   const bool alone = results.size() == 1;
+  const bool truth =
+      std::any_of(results.begin(), results.end(), [](const StoredResult& r) { return r.has_truth(); });
   return fill_page(
       k_page_html,
       {{"title", escape_html(title_of(results))},
@@ -50,14 +59,16 @@ std::string page(std::span<const StoredResult> results) {
        {"headline", alone ? headline_html(results[0]) : ""},
        {"figures_above", alone ? "" : figures(results)},
        {"figures_below", alone ? figures(results) : ""},
+       {"trajectories_note", truth ? kAligned : kNotAligned},
+       {"error_hidden", truth ? "" : " hidden"},
        {"camera", section_html("camera", "What the camera saw",
                                "Images spread over the run, half their size, row by row.",
                                alone ? camera_html(results[0]) : "")},
        {"loops",
         section_html(
             "loops", "Loop candidates",
-            "Every candidate, accepted or not, judged against exact truth. Point at a row to see it on "
-            "the map.",
+            fmt::format("Every candidate, accepted or not{}. Point at a row to see it on the map.",
+                        truth ? ", judged against exact truth" : ""),
             loops_html(results))},
        {"timing",
         section_html("timing", "Timing", "Wall clock; the only part of this page that differs between runs.",

@@ -1,6 +1,7 @@
 // The page to look at: one self-contained HTML file made from nothing but the files of the result folder(s).
 //
-// Needed: metrics.json, truth.tum, estimate.tum. Shown if there: odometry.tum, scans.csv, loops.csv,
+// Needed: metrics.json, estimate.tum, and of a simulated run (its metrics.json has a seed) truth.tum. Without truth
+// the page shows no errors. Shown if there: truth.tum, odometry.tum, scans.csv, loops.csv,
 // descriptors.csv, map.ply, timing.json. A file that is there but broken is an InputError that names it.
 // Everything but the part between `<!-- timing begin -->` and `<!-- timing end -->` is the same, byte for
 // byte, for the same files; that part is fed from timing.json alone.

@@ -50,9 +50,10 @@ StoredResult read_stored_result(const fs::path& path) {
   result.metrics = read_object(path / "metrics.json");
   result.scenario = member_text(result, "scenario");
   result.method = member_text(result, "method");
-  result.seed = member_text(result, "seed");
+  if (result.metrics->contains("seed")) result.seed = member_text(result, "seed");
   if (fs::exists(path / "timing.json")) result.timing = read_object(path / "timing.json");
-  result.truth = read_tum(path / "truth.tum");
+  // Only a recording may lack it: a simulated run knows its seed and its truth.
+  if (!result.seed.empty() || fs::exists(path / "truth.tum")) result.truth = read_tum(path / "truth.tum");
   result.estimate = read_tum(path / "estimate.tum");
   if (fs::exists(path / "odometry.tum")) result.odometry = read_tum(path / "odometry.tum");
   result.scans = read_table(path / "scans.csv", kScanColumns);

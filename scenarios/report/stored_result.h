@@ -15,16 +15,19 @@ namespace vsslam {
 
 struct StoredResult {
   std::filesystem::path path;
-  std::string scenario, method, seed;             ///< as metrics.json says
+  std::string scenario, method;                   ///< as metrics.json says
+  std::string seed;                               ///< likewise; empty for a recording
   std::shared_ptr<const nlohmann::json> metrics;  ///< an object
   std::shared_ptr<const nlohmann::json> timing;   ///< an object, or null without timing.json
-  PoseTrajectory truth, estimate;                 ///< T_world_base, T_map_base
+  PoseTrajectory truth;                           ///< T_world_base; empty without truth.tum
+  PoseTrajectory estimate;                        ///< T_map_base
   PoseTrajectory odometry;                        ///< T_odom_base; empty without odometry.tum
   std::optional<CsvTable> scans, loops, descriptors;
   std::optional<Cloud> points_map;
   std::string camera_png;                         ///< empty without camera.png
 
-  std::string name() const { return scenario + " · " + method + " · seed " + seed; }
+  bool has_truth() const { return !truth.empty(); }
+  std::string name() const { return scenario + " · " + method + (seed.empty() ? "" : " · seed " + seed); }
 };
 
 /// Throws InputError that names the file: missing (only the needed ones), empty or broken.

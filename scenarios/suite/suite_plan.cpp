@@ -8,7 +8,7 @@
 #include "core/errors.h"
 #include "core/files.h"
 #include "scenarios/fingerprint.h"
-#include "scenarios/results.h"
+#include "scenarios/simulated_drive.h"
 
 namespace vsslam {
 

@@ -37,14 +37,11 @@ double SuiteRunner::expected_s() const {
   return sum_s;
 }
 
-RunContext SuiteRunner::context(const Job& job, std::shared_ptr<ScenarioWorld> place, ProgressState& state,
-                                Progress& progress) {
+RunEvents SuiteRunner::events(const Job& job, ProgressState& state, Progress& progress) {
   const auto name = [this, scenario = job.scenario](std::string_view method, uint64_t seed) {
     return fmt::format("{} {} seed {}", plan_.scenarios[scenario].name, method, seed);
   };
-  return {.place = std::move(place),
-          .options = {.out = plan_.folder, .threads = options_.threads},
-          .on_finished =
+  return {.on_finished =
               [this, name, &state, &progress](const FinishedRun& run) {
                 ++made_, ++state.finished_runs;
                 if (!run.metrics.failure.empty())
@@ -62,8 +59,8 @@ RunContext SuiteRunner::context(const Job& job, std::shared_ptr<ScenarioWorld> p
                 state.expected_s = expected_s();
               },
           .on_failed =
-              [this, name, scenario = job.scenario, &state, &progress](Method method, uint64_t seed,
-                                                                       const std::string& why) {
+              [this, name, scenario = job.scenario, seed = job.seed, &state, &progress](
+                  Method method, const std::string& why) {
                 ++state.finished_runs;
                 failures_.push_back({scenario, method, seed, why});
                 progress.note(name(method_name(method), seed) + " failed: " + why);
@@ -78,7 +75,8 @@ void SuiteRunner::run(const std::atomic<bool>& stop, Progress& progress) {
   for (size_t i = 0; i < jobs_.size(); ++i) {
     if (i == 0 || jobs_[i].scenario != jobs_[i - 1].scenario)
       place = std::make_shared<ScenarioWorld>(plan_.scenarios[jobs_[i].scenario]);
-    add_seed_runs(context(jobs_[i], place, state, progress), jobs_[i].methods, jobs_[i].seed, pipelines);
+    add_seed_runs(place, plan_.folder, jobs_[i].methods, jobs_[i].seed, events(jobs_[i], state, progress),
+                  pipelines);
   }
   place.reset();
   run_pipelines(std::move(pipelines), options_.threads, stop);

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "scenarios/progress.h"
-#include "scenarios/seed_run.h"
+#include "scenarios/simulated_drive.h"
 #include "scenarios/suite/suite_plan.h"
 
 namespace vsslam {
@@ -47,8 +47,7 @@ class SuiteRunner {
     std::vector<Method> methods;
   };
   double expected_s() const;
-  RunContext context(const Job& job, std::shared_ptr<ScenarioWorld> place, ProgressState& state,
-                     Progress& progress);
+  RunEvents events(const Job& job, ProgressState& state, Progress& progress);
 
   const SuitePlan& plan_;
   SuiteRunOptions options_;

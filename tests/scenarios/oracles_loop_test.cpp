@@ -173,8 +173,8 @@ TEST(LoopOracle, AcceptedEdgesAreTrueWithinHalfAMetreAndFiveDegrees) {
   EXPECT_EQ(verdict_name(score.judgements[1].verdict), "true");
   EXPECT_EQ(verdict_name(score.judgements[2].verdict), "false");
   EXPECT_EQ(verdict_name(score.judgements[4].verdict), "rejected");
-  EXPECT_NEAR(score.judgements[2].error_deg, 5.1, 1e-6);
-  EXPECT_NEAR(score.judgements[3].error_m, 0.51, 1e-6);
+  EXPECT_NEAR(*score.judgements[2].error_deg, 5.1, 1e-6);
+  EXPECT_NEAR(*score.judgements[3].error_m, 0.51, 1e-6);
 }
 
 TEST(LoopOracle, RecallCountsRevisitsNearTrueEdges) {
