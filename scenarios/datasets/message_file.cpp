@@ -15,9 +15,6 @@ namespace vsslam {
 
 namespace {
 
-// Of chunks that overlap in time, this much stays decompressed; what was let go is read again.
-constexpr size_t kLoadedBytes = size_t{256} << 20;
-
 /// A message whose turn comes: by time, then by place in the file.
 struct Pending {
   Time recorded;
@@ -156,7 +153,7 @@ const ChunkContent& ChunkedReader::content_of(size_t chunk) {
   size_t bytes = 0;
   for (auto loaded = loaded_.begin(); loaded != loaded_.end();) {
     bytes += loaded->content.bytes.size();
-    const bool let_go = bytes > kLoadedBytes && loaded != loaded_.begin();
+    const bool let_go = bytes > options_.chunk_memory_bytes && loaded != loaded_.begin();
     loaded = let_go ? loaded_.erase(loaded) : std::next(loaded);
   }
   return loaded_.front().content;

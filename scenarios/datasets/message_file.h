@@ -35,6 +35,8 @@ struct RecordedTopic {
 struct ReadOptions {
   std::vector<std::string> topics{};  ///< only these; empty: all
   bool salvage = false;               ///< of a broken or truncated file, read what is before the break
+  /// Chunks that overlap in time stay decompressed up to so much; what was let go is read again.
+  size_t chunk_memory_bytes = size_t{256} << 20;
 };
 
 /// Reads in order of recording, in bounded memory. Not thread-safe.
