@@ -38,23 +38,61 @@ struct Writer {
   }
 };
 
-}  // namespace
-
-std::string encode_png_grey8(int width_px, int height_px, std::span<const uint8_t> grey) {
-  const auto width = static_cast<size_t>(width_px), height = static_cast<size_t>(height_px);
-  if (width_px <= 0 || height_px <= 0 || grey.size() != width * height)
-    throw InputError(
-        fmt::format("an image of {} x {} pixels cannot have {} values", width_px, height_px, grey.size()));
+/// `rows`: bytes as PNG has them.
+std::string encode(int width_px, int height_px, int bits, std::span<const uint8_t> rows) {
+  const auto row_bytes = static_cast<size_t>(width_px) * static_cast<size_t>(bits / 8);
   Writer writer;
   png_set_IHDR(writer.png, writer.info, static_cast<png_uint_32>(width_px),
-               static_cast<png_uint_32>(height_px), 8, PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE,
+               static_cast<png_uint_32>(height_px), bits, PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE,
                PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
   png_set_compression_level(writer.png, kCompressionLevel);
   png_set_filter(writer.png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
   png_write_info(writer.png, writer.info);
-  for (size_t y = 0; y < height; ++y) png_write_row(writer.png, grey.data() + y * width);
+  for (size_t y = 0; y < static_cast<size_t>(height_px); ++y)
+    png_write_row(writer.png, rows.data() + y * row_bytes);
   png_write_end(writer.png, writer.info);
   return std::move(writer.bytes);
+}
+
+void check_size(int width_px, int height_px, size_t values) {
+  if (width_px <= 0 || height_px <= 0 ||
+      values != static_cast<size_t>(width_px) * static_cast<size_t>(height_px))
+    throw InputError(
+        fmt::format("an image of {} x {} pixels cannot have {} values", width_px, height_px, values));
+}
+
+}  // namespace
+
+std::string encode_png_grey8(int width_px, int height_px, std::span<const uint8_t> grey) {
+  check_size(width_px, height_px, grey.size());
+  return encode(width_px, height_px, 8, grey);
+}
+
+std::string encode_png_grey16(int width_px, int height_px, std::span<const uint16_t> grey) {
+  check_size(width_px, height_px, grey.size());
+  std::vector<uint8_t> rows;  // most significant byte first
+  rows.reserve(2 * grey.size());
+  for (const uint16_t value : grey) {
+    rows.push_back(static_cast<uint8_t>(value >> 8));
+    rows.push_back(static_cast<uint8_t>(value));
+  }
+  return encode(width_px, height_px, 16, rows);
+}
+
+GreyImage decode_png_grey8(std::string_view bytes, std::string_view place) {
+  png_image image{};
+  image.version = PNG_IMAGE_VERSION;
+  if (!png_image_begin_read_from_memory(&image, bytes.data(), bytes.size()))
+    throw InputError(fmt::format("{}: not a PNG image: {}", place, image.message));
+  GreyImage decoded{static_cast<int>(image.width), static_cast<int>(image.height)};
+  const bool grey = image.format == static_cast<png_uint_32>(PNG_FORMAT_GRAY);
+  if (grey) decoded.grey.resize(PNG_IMAGE_SIZE(image));
+  if (!grey || !png_image_finish_read(&image, nullptr, decoded.grey.data(), 0, nullptr)) {
+    const std::string why = grey ? image.message : "expected 8 bits of grey";
+    png_image_free(&image);
+    throw InputError(fmt::format("{}: {}", place, why));
+  }
+  return decoded;
 }
 
 }  // namespace vsslam

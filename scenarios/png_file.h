@@ -4,10 +4,22 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace vsslam {
 
 /// The bytes of a PNG file, the same for the same image. `grey` is row-major, 8 bits. Lossless.
 std::string encode_png_grey8(int width_px, int height_px, std::span<const uint8_t> grey);
+
+/// The same with 16 bits: distances and the like.
+std::string encode_png_grey16(int width_px, int height_px, std::span<const uint16_t> grey);
+
+struct GreyImage {
+  int width_px = 0, height_px = 0;
+  std::vector<uint8_t> grey{};  ///< row-major
+};
+/// Of a grey PNG of 8 bits. Throws InputError that starts with `place`.
+GreyImage decode_png_grey8(std::string_view bytes, std::string_view place);
 
 }  // namespace vsslam
