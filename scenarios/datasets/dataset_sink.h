@@ -2,14 +2,15 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
+#include <string>
 
-#include "scenarios/scenario.h"
 #include "sensors/samples.h"
 #include "sim/trajectory.h"
 
 namespace vsslam {
 
-/// Datasets' time 0 in nanoseconds since 1970: consumers take a stamp of 0 as unset.
+/// Datasets' time 0 since 1970: consumers take a stamp of 0 as unset.
 inline constexpr Duration kDatasetEpoch{1'700'000'000'000'000'000};
 /// Time of a dataset from time of the simulation.
 inline Time dataset_time(Time simulated) {
@@ -19,20 +20,19 @@ inline Time dataset_time(Time simulated) {
 /// One measurement, on simulated time.
 struct DatasetSample {
   Measurement measurement;
-  Time end;           ///< of the acquisition, true time
-  Kinematics base;    ///< truth of the base at the measurement's true stamp
-  int64_t index = 0;  ///< among the samples of its kind
-  bool kept = false;  ///< its files exist already: a scan has no points, an image no pixels
-  std::string png{};  ///< of an image, if a sink asked for it
+  Time end{};         ///< of the acquisition, true time
+  Kinematics base{};  ///< truth of the base at the measurement's true stamp
+  int64_t index = 0;  ///< among the measurements of its kind
+  std::string png{};  ///< of an image, if a sink wants it
 };
 
-/// Not thread-safe but for has_scan and has_image, which must be callable while write runs.
+/// Not thread-safe but for the const functions, which are called while write runs.
 class DatasetSink {
  public:
   virtual ~DatasetSink() = default;
-  /// Does the file of this scan, or image, exist from an earlier, interrupted export? `stamp`: the sensor's.
-  virtual bool has_scan(int64_t index, Time stamp) const = 0;
-  virtual bool has_image(Time stamp) const = 0;
+  /// Is the content of this scan, or image, still to be written here? `stamp`: the sensor's, simulated time.
+  virtual bool needs_scan(int64_t index, Time stamp) const = 0;
+  virtual bool needs_image(Time stamp) const = 0;
   virtual bool wants_png() const { return false; }
   /// In order of `end`. Throws ResourceError.
   virtual void write(const DatasetSample& sample) = 0;
