@@ -147,6 +147,7 @@ int run_cli(const std::vector<std::string>& arguments, std::ostream& out, std::o
         app.set_help_all_flag("--help-all", "help of every command");
         add_run_command(app, console, command);
         add_suite_command(app, console, command);
+        add_export_command(app, console, command);
         add_world_command(app, console, command);
         add_evaluate_command(app, console, command);
         add_optimize_command(app, console, command);

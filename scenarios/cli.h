@@ -43,6 +43,7 @@ void add_world_command(CLI::App& app, Console& console, Command& command);
 void add_evaluate_command(CLI::App& app, Console& console, Command& command);
 void add_optimize_command(CLI::App& app, Console& console, Command& command);
 void add_report_command(CLI::App& app, Console& console, Command& command);
+void add_export_command(CLI::App& app, Console& console, Command& command);
 void add_list_command(CLI::App& app, Console& console, Command& command);
 
 /// --out, --threads, --json, --quiet.
