@@ -1,4 +1,4 @@
-// Two consecutive states and the IMU between them, for Ceres (Forster et al., T-RO 2017, section VI).
+// Two consecutive states and the IMU between them (Forster et al., T-RO 2017, section VI).
 #pragma once
 
 #include <ceres/sized_cost_function.h>

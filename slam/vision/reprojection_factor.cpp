@@ -91,10 +91,8 @@ bool DepthFactor::Evaluate(double const* const* parameters, double* residuals, d
 
 bool AnchorDepthFactor::Evaluate(double const* const* parameters, double* residuals,
                                  double** jacobians) const {
-  Eigen::Map<Vec2>{residuals} = Vec2(weight_ * (parameters[0][2] * depth_m_ - 1.0), 0);
-  if (jacobians && jacobians[0])
-    Eigen::Map<Eigen::Matrix<double, 2, 3, Eigen::RowMajor>>{jacobians[0]} << 0, 0, weight_ * depth_m_, 0, 0,
-        0;
+  residuals[0] = weight_ * (parameters[0][2] * depth_m_ - 1.0);
+  if (jacobians && jacobians[0]) Eigen::Map<Vec3>{jacobians[0]} << 0, 0, weight_ * depth_m_;
   return true;
 }
 

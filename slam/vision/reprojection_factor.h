@@ -1,4 +1,4 @@
-// A feature in the frame of its anchor and in another frame, for Ceres.
+// A feature in the frame of its anchor and in another frame.
 //
 // With the point's ray a = (x, y, 1) and inverse depth rho = 1 / z in the anchor, everything is scaled by rho, so that
 // points at infinity (rho = 0) are as good as others:
@@ -43,7 +43,7 @@ class AnchorRayFactor final : public ceres::SizedCostFunction<2, 3> {
 };
 
 /// The LiDAR's depth in frame j: (rho depth - y_z) / sigma_ratio. Variables as above. A second row is always 0: where
-/// all factors of points have two rows, Ceres eliminates the points with code made for these sizes.
+/// all factors of two poses and a point have two rows, one path made for these sizes adds them up.
 class DepthFactor final : public ceres::SizedCostFunction<2, 7, 7, 3> {
  public:
   DepthFactor(const SE3& T_imu_camera, double depth_m, double sigma_ratio)
@@ -55,8 +55,8 @@ class DepthFactor final : public ceres::SizedCostFunction<2, 7, 7, 3> {
   double depth_m_, weight_;
 };
 
-/// The same in the anchor, where y_z = 1, its second row 0 as well. Variable: point.
-class AnchorDepthFactor final : public ceres::SizedCostFunction<2, 3> {
+/// The same in the anchor, where y_z = 1. Variable: point.
+class AnchorDepthFactor final : public ceres::SizedCostFunction<1, 3> {
  public:
   AnchorDepthFactor(double depth_m, double sigma_ratio) : depth_m_(depth_m), weight_(1.0 / sigma_ratio) {}
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;

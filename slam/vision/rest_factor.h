@@ -1,4 +1,4 @@
-// Two frames between which the robot stood still, for Ceres: in place of the IMU factor.
+// Two frames between which the robot stood still: in place of the IMU factor.
 #pragma once
 
 #include <ceres/sized_cost_function.h>

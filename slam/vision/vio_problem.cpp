@@ -192,8 +192,9 @@ void leave_newest(VioWindow& window, const VioModel& model) {
 Eigen::Matrix<double, 15, 15> newest_covariance(const VioWindow& window, const VioModel& model) {
   const WindowProblem problem =
       make_problem(window, usable_features(window, model.config.max_features), model);
-  const NormalEquations equations =
-      normal_equations(problem.factors, {problem.at.now, problem.at.now, problem.at.frames});
+  WindowEquations window_equations(problem.factors, problem.features.size());
+  window_equations.linearize(problem.at.now, problem.at.now);
+  const NormalEquations equations = window_equations.without_points();
   const Eigen::Index size = equations.H.rows();
   Eigen::MatrixXd last = Eigen::MatrixXd::Zero(size, 15);
   last.bottomRows<15>().setIdentity();

@@ -30,6 +30,8 @@ struct VioSolution {
   int iterations = 0;
   bool usable = false;
 };
+/// Moves `x` to where the factors' cost is least.
+VioSolution minimize(const std::vector<WindowFactor>& factors, WindowValues& x, int max_iterations);
 /// Optimises all states and the points of the usable features, and writes them into the window.
 VioSolution solve(VioWindow& window, const VioModel& model, int max_iterations);
 

@@ -1,5 +1,7 @@
-// The only file of the visual-inertial odometry that knows Ceres' solver.
-#include <ceres/ceres.h>
+// Powell's dog leg on the window (Nocedal & Wright, Numerical Optimization, algorithm 4.1 and section 4.1), points
+// eliminated; tests compare it with Ceres'.
+#include <algorithm>
+#include <cmath>
 
 #include "slam/vision/vio_problem.h"
 
@@ -7,63 +9,89 @@ namespace vsslam {
 
 namespace {
 
-ceres::Solver::Options solver_options(int max_iterations, bool has_features) {
-  ceres::Solver::Options options;
-  // Without features Ceres would choose what to eliminate, by addresses.
-  options.linear_solver_type = has_features ? ceres::DENSE_SCHUR : ceres::DENSE_NORMAL_CHOLESKY;
-  options.trust_region_strategy_type = ceres::DOGLEG;
-  options.dense_linear_algebra_library_type = ceres::EIGEN;  // the others round as the host's LAPACK does
-  options.num_threads = 1;                                   // sums of several threads are not repeatable
-  options.max_num_iterations = max_iterations;               // and no limit on wall-clock time
-  options.function_tolerance = 1e-4;
-  options.logging_type = ceres::SILENT;
-  return options;
-}
+constexpr double kFunctionTolerance = 1e-4;  // relative; no limit on wall-clock time
+constexpr double kFirstRadius = 1e4;
+constexpr double kLeastGain = 1e-3;  // of the cost predicted, for a step to be taken
 
-ceres::Problem::Options problem_options() {
-  ceres::Problem::Options options;
-  options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  options.disable_all_safety_checks = true;
-  return options;
-}
+// A step within a trust region. Lengths are in units of the diagonal: |D^1/2 dx|.
+class DogLeg {
+ public:
+  explicit DogLeg(const WindowEquations& equations)
+      : equations_(equations),
+        gradient_(equations.gradient()),
+        scale_(equations.diagonal().cwiseMax(1e-6).cwiseMin(1e32)) {
+    for (double share = 1e-8; !newton_ && share < 1; share *= 10)
+      newton_ = equations.newton_step(share * scale_);
+    // Down the gradient of the scaled problem, to where the quadratic is least.
+    steepest_ = -gradient_.cwiseQuotient(scale_);
+    steepest_ *= gradient_.dot(gradient_.cwiseQuotient(scale_)) / equations.curvature(steepest_);
+  }
+
+  bool possible() const { return newton_ && steepest_.allFinite(); }
+
+  Eigen::VectorXd step(double radius) const {
+    const double newton_length = length(*newton_), steepest_length = length(steepest_);
+    if (newton_length <= radius) return *newton_;
+    if (steepest_length >= radius) return steepest_ * (radius / steepest_length);
+    // |steepest + t (newton - steepest)| = radius
+    const Eigen::VectorXd leg = *newton_ - steepest_;
+    const double a = leg.dot(scale_.cwiseProduct(leg)), b = steepest_.dot(scale_.cwiseProduct(leg)),
+                 c = steepest_length * steepest_length - radius * radius;
+    return steepest_ + (std::sqrt(b * b - a * c) - b) / a * leg;
+  }
+
+  double predicted_gain(const Eigen::VectorXd& step) const {
+    return -gradient_.dot(step) - 0.5 * equations_.curvature(step);
+  }
+  double length(const Eigen::VectorXd& step) const { return std::sqrt(step.dot(scale_.cwiseProduct(step))); }
+
+ private:
+  const WindowEquations& equations_;
+  Eigen::VectorXd gradient_, scale_, steepest_;
+  std::optional<Eigen::VectorXd> newton_;
+};
 
 }  // namespace
 
+VioSolution minimize(const std::vector<WindowFactor>& factors, WindowValues& x, int max_iterations) {
+  WindowEquations equations(factors, x.points.size());
+  double cost = window_cost(factors, x), radius = kFirstRadius;
+  VioSolution solution{.initial_cost = cost, .final_cost = cost, .iterations = 0, .usable = false};
+  if (!std::isfinite(cost)) return solution;
+  for (bool converged = false; !converged && solution.iterations < max_iterations;) {
+    equations.linearize(x, x);
+    const DogLeg leg(equations);
+    if (!leg.possible()) break;
+    for (bool accepted = false; !accepted && !converged && solution.iterations < max_iterations;) {
+      ++solution.iterations;
+      const Eigen::VectorXd step = leg.step(radius);
+      const double predicted = leg.predicted_gain(step);
+      WindowValues trial = equations.moved(x, step);
+      const double trial_cost = window_cost(factors, trial);
+      const double gain = (cost - trial_cost) / predicted;  // NaN: not accepted
+      accepted = gain > kLeastGain;
+      converged = predicted <= kFunctionTolerance * cost ||
+                  (accepted && cost - trial_cost <= kFunctionTolerance * cost);
+      if (gain > 0.75) radius = std::max(radius, 3 * leg.length(step));
+      if (!(gain > 0.25)) radius = 0.5 * std::min(radius, leg.length(step));
+      if (!accepted) continue;
+      x = std::move(trial);
+      cost = trial_cost;
+    }
+  }
+  solution.final_cost = cost;
+  solution.usable = solution.iterations > 0;
+  return solution;
+}
+
 VioSolution solve(VioWindow& window, const VioModel& model, int max_iterations) {
-  WindowProblem ours = make_problem(window, usable_features(window, model.config.max_features), model);
-  WindowValues& x = ours.at.now;
-  PoseManifold manifold;
-  ceres::CauchyLoss cauchy(1.0);
-  ceres::Problem problem(problem_options());
-  ceres::Solver::Options options = solver_options(max_iterations, !ours.features.empty());
-  auto* ordering = new ceres::ParameterBlockOrdering;
-  options.linear_solver_ordering.reset(ordering);
-  for (InversePoint& point : x.points) {
-    problem.AddParameterBlock(point.data(), 3);
-    ordering->AddElementToGroup(point.data(), 0);
-  }
-  for (FrameBlocks& frame : x.frames) {
-    problem.AddParameterBlock(frame.pose.data(), 7, &manifold);
-    problem.AddParameterBlock(frame.motion.data(), 9);
-    ordering->AddElementToGroup(frame.pose.data(), 1);
-    ordering->AddElementToGroup(frame.motion.data(), 1);
-  }
-  std::vector<double*> blocks;
-  for (const WindowFactor& factor : ours.factors) {
-    blocks.clear();
-    for (const Variable v : factor.variables) blocks.push_back(x.data(v));
-    problem.AddResidualBlock(factor.cost.get(), factor.robust ? &cauchy : nullptr, blocks);
-  }
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &problem, &summary);
-  VioSolution solution{summary.initial_cost, summary.final_cost,
-                       std::max(0, static_cast<int>(summary.iterations.size()) - 1),
-                       summary.IsSolutionUsable()};
+  WindowProblem problem = make_problem(window, usable_features(window, model.config.max_features), model);
+  WindowValues& x = problem.at.now;
+  const VioSolution solution = minimize(problem.factors, x, max_iterations);
   if (!solution.usable) return solution;
   for (size_t i = 0; i < x.frames.size(); ++i) read_blocks(x.frames[i], window.frames[i].state);
-  for (size_t i = 0; i < ours.features.size(); ++i) window.features.at(ours.features[i]).point = x.points[i];
+  for (size_t i = 0; i < problem.features.size(); ++i)
+    window.features.at(problem.features[i]).point = x.points[i];
   return solution;
 }
 

@@ -1,4 +1,5 @@
-// Variables of the window's least-squares problem as Ceres wants them: plain arrays of doubles.
+// Variables of the window's least-squares problem as its factors (Ceres' cost functions) want them: plain arrays of
+// doubles.
 #pragma once
 
 #include <array>
@@ -23,7 +24,7 @@ inline SE3 pose_of(const double* block) {
   return pose;
 }
 
-/// Ceres asks for 7 columns; PoseManifold's PlusJacobian [I; 0] hands the first 6 through.
+/// A pose block has 7 columns; PoseManifold's PlusJacobian [I; 0] hands the first 6 through.
 template <int kRows, class Derived>
 void put_pose_jacobian(const Eigen::MatrixBase<Derived>& J, double* out) {
   Eigen::Map<Eigen::Matrix<double, kRows, 7, Eigen::RowMajor>> map(out);
@@ -59,7 +60,6 @@ FrameBlocks frame_blocks(const VioState& state);
 /// Stamps are not among the variables.
 void read_blocks(const FrameBlocks& blocks, VioState& state);
 
-/// Ceres sorts blocks by their addresses, so each kind is one array: the order is that of the window.
 struct WindowValues {
   std::vector<FrameBlocks> frames;
   std::vector<InversePoint> points;  ///< of features, each in the camera of its anchor

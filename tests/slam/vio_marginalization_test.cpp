@@ -55,6 +55,12 @@ Linearization at_zero(int frames, int features) {
   return at;
 }
 
+NormalEquations normal_equations(const std::vector<WindowFactor>& factors, const Linearization& at) {
+  WindowEquations equations(factors, at.now.points.size());
+  equations.linearize(at.now, at.first);
+  return equations.without_points();
+}
+
 std::vector<WindowFactor> chain(int from, int to) {
   std::vector<WindowFactor> factors;
   for (int i = from; i < to; ++i)
