@@ -101,11 +101,9 @@ RecordPlace BagRecording::record_at(uint64_t offset) {
 RecordingIndex BagRecording::index() {
   const RecordPlace file_header = record_at(kBagMagic.size());
   const auto index_at = file_header.fields.number<uint64_t>("index_pos");
-  if (index_at == 0)
-    throw InputError(fmt::format("{}: has no index: its recording was not finished", file_.name()));
+  if (index_at == 0) throw InputError("has no index: its recording was not finished");
   if (index_at > file_.size())
-    throw InputError(
-        fmt::format("{}: ends at byte {}, before its index at {}", file_.name(), file_.size(), index_at));
+    throw InputError(fmt::format("ends at byte {}, before its index at {}", file_.size(), index_at));
   RecordingIndex index;
   const std::string bytes = file_.read(index_at, file_.size() - index_at);
   ByteCursor cursor(bytes);
@@ -124,7 +122,7 @@ RecordingIndex BagRecording::index() {
       index.chunks.push_back(std::move(chunk));
     }
   } catch (const InputError& error) {
-    throw InputError(fmt::format("{}: index at byte {} is broken: {}", file_.name(), index_at, error.what()));
+    throw InputError(fmt::format("index at byte {} is broken: {}", index_at, error.what()));
   }
   return index;
 }
@@ -144,7 +142,7 @@ RecordingIndex BagRecording::scan() {
       at = record.end();
     }
   } catch (const InputError& error) {
-    index.damage = fmt::format("{}: byte {}: {}", file_.name(), at, error.what());
+    index.damage = fmt::format("byte {}: {}", at, error.what());
   }
   index.connections = connections_;
   return index;
@@ -167,7 +165,7 @@ ChunkContent BagRecording::load(const RecordedChunk& chunk) {
     if (!records.damage.empty())
       throw InputError(unfinished ? "its recording was not finished" : std::move(records.damage));
   } catch (const InputError& error) {
-    content.damage = fmt::format("{}: chunk at byte {}: {}", file_.name(), chunk.offset, error.what());
+    content.damage = fmt::format("chunk at byte {}: {}", chunk.offset, error.what());
   }
   return content;
 }

@@ -21,13 +21,11 @@ ByteFile::ByteFile(const std::filesystem::path& path) : name_(path.string()) {
 
 std::string ByteFile::read(uint64_t offset, uint64_t size) {
   if (offset > size_ || size > size_ - offset)
-    throw InputError(
-        fmt::format("{}: byte {}: {} bytes wanted, the file ends at {}", name_, offset, size, size_));
+    throw InputError(fmt::format("byte {}: {} bytes wanted, the file ends at {}", offset, size, size_));
   std::string bytes(size, '\0');
   stream_.seekg(static_cast<std::streamoff>(offset));
   stream_.read(bytes.data(), static_cast<std::streamsize>(size));
-  if (!stream_)
-    throw InputError(fmt::format("{}: byte {}: read failed: {}", name_, offset, std::strerror(errno)));
+  if (!stream_) throw InputError(fmt::format("byte {}: read failed: {}", offset, std::strerror(errno)));
   return bytes;
 }
 

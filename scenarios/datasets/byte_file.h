@@ -10,12 +10,12 @@ namespace vsslam {
 
 class ByteFile {
  public:
-  /// Throws InputError.
+  /// Throws InputError that names the file.
   explicit ByteFile(const std::filesystem::path& path);
 
   const std::string& name() const { return name_; }
   uint64_t size() const { return size_; }
-  /// Throws InputError, before any memory is taken, if the file has not so many bytes there.
+  /// Throws InputError (that does not name the file), before any memory is taken, if so many bytes are not there.
   std::string read(uint64_t offset, uint64_t size);
   /// The same, but only what is there.
   std::string read_available(uint64_t offset, uint64_t size);

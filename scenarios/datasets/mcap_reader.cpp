@@ -53,9 +53,8 @@ void McapRecording::note(const McapRecord& record) {
 
 RecordingIndex McapRecording::index() {
   if (file_.read_available(file_.size() - kMcapMagic.size(), kMcapMagic.size()) != kMcapMagic)
-    throw InputError(
-        fmt::format("{}: ends at byte {} without MCAP's closing mark: its recording was not finished",
-                    file_.name(), file_.size()));
+    throw InputError(fmt::format(
+        "ends at byte {} without MCAP's closing mark: its recording was not finished", file_.size()));
   if (std::optional<RecordingIndex> index = from_summary()) return *std::move(index);
   RecordingIndex index = scan();
   if (!index.damage.empty()) throw InputError(index.damage);
@@ -67,24 +66,23 @@ std::optional<RecordingIndex> McapRecording::from_summary() {
   const uint64_t tail = kMcapRecordHeader + kMcapFooter + kMcapMagic.size();
   const uint64_t footer_at = file_.size() - std::min(tail, file_.size());
   const std::string footer_bytes = file_.read(footer_at, kMcapRecordHeader + kMcapFooter);
-  ByteCursor footer_cursor(footer_bytes);
-  const McapRecord footer(footer_cursor);
-  if (footer.op != McapOp::footer || footer.content.size() != kMcapFooter)
-    throw InputError(fmt::format("{}: byte {}: no footer is here", file_.name(), footer_at));
-  ByteCursor fields(footer.content);
+  std::string expected;
+  put_number(expected, static_cast<uint8_t>(McapOp::footer));
+  put_number(expected, uint64_t{kMcapFooter});
+  if (!footer_bytes.starts_with(expected))
+    throw InputError(fmt::format("byte {}: no footer is here", footer_at));
+  ByteCursor fields(std::string_view(footer_bytes).substr(kMcapRecordHeader));
   const auto summary_at = fields.number<uint64_t>();
   fields.number<uint64_t>();
   const auto crc = fields.number<uint32_t>();
   if (summary_at == 0) return std::nullopt;
   if (summary_at > footer_at)
-    throw InputError(
-        fmt::format("{}: byte {}: a summary at {} cannot be", file_.name(), footer_at, summary_at));
+    throw InputError(fmt::format("byte {}: a summary at {} cannot be", footer_at, summary_at));
 
   const std::string summary = file_.read(summary_at, file_.size() - summary_at);
   const size_t covered = summary.size() - kMcapMagic.size() - sizeof crc;
   if (crc != 0 && crc != crc32_of(std::string_view(summary).substr(0, covered)))
-    throw InputError(
-        fmt::format("{}: the summary at byte {} does not have its checksum", file_.name(), summary_at));
+    throw InputError(fmt::format("the summary at byte {} does not have its checksum", summary_at));
   RecordingIndex index;
   std::optional<McapStatistics> statistics;
   try {
@@ -102,8 +100,7 @@ std::optional<RecordingIndex> McapRecording::from_summary() {
       for (const auto& [channel, place] : chunk.message_indexes) added.connections->push_back(channel);
     }
   } catch (const InputError& error) {
-    throw InputError(
-        fmt::format("{}: summary at byte {} is broken: {}", file_.name(), summary_at, error.what()));
+    throw InputError(fmt::format("summary at byte {} is broken: {}", summary_at, error.what()));
   }
   if (!statistics || channels_.size() != statistics->channels || index.chunks.size() != statistics->chunks ||
       (index.chunks.empty() && statistics->messages > 0))
@@ -141,7 +138,7 @@ RecordingIndex McapRecording::scan() {
     }
   } catch (const InputError& error) {
     finish_run(run, at, index);
-    if (index.damage.empty()) index.damage = fmt::format("{}: byte {}: {}", file_.name(), at, error.what());
+    if (index.damage.empty()) index.damage = fmt::format("byte {}: {}", at, error.what());
   }
   index.connections = channels_;
   return index;
@@ -168,7 +165,7 @@ ChunkContent McapRecording::load(const RecordedChunk& chunk) {
     else
       read_records(content);
   } catch (const InputError& error) {
-    content.damage = fmt::format("{}: chunk at byte {}: {}", file_.name(), chunk.offset, error.what());
+    content.damage = fmt::format("chunk at byte {}: {}", chunk.offset, error.what());
   }
   return content;
 }

@@ -72,9 +72,9 @@ void ChunkedReader::open() {
   try {
     index_ = recording_->index();
   } catch (const InputError& error) {
-    if (!options_.salvage) throw;
+    break_off(error.what());
     index_ = recording_->scan();
-    damage_ = index_.damage.empty() ? error.what() : index_.damage;
+    if (!index_.damage.empty()) break_off(index_.damage);
   }
 }
 
@@ -167,15 +167,15 @@ Message ChunkedReader::decode(const Pending& pending) {
     const std::string_view bytes = std::string_view(content.bytes).substr(place.offset, place.size);
     return {connection.topic, pending.recorded, decode_message(connection.type, bytes, *connection.format)};
   } catch (const InputError& error) {
-    throw InputError(fmt::format("{}: message on {} at {:.3f} s: {}", recording_->name(), connection.topic,
+    throw InputError(fmt::format("message on {} at {:.3f} s: {}", connection.topic,
                                  pending.recorded.seconds(), error.what()));
   }
 }
 
 /// Notes where a salvage ends; without one, that is the end of everything.
 void ChunkedReader::break_off(const std::string& damage) {
-  if (!options_.salvage) throw InputError(damage);
-  damage_ = damage;
+  damage_ = fmt::format("{}: {}", recording_->name(), damage);
+  if (!options_.salvage) throw InputError(damage_);
 }
 
 }  // namespace

@@ -46,7 +46,7 @@ struct RecordingIndex {
   std::string damage;                     ///< where the file breaks off; empty: nowhere
 };
 
-/// One file.
+/// One file. Errors and damage do not name it.
 class ChunkedRecording {
  public:
   explicit ChunkedRecording(const std::filesystem::path& path) : file_(path) {}

@@ -2,7 +2,6 @@
 // BigInt nanoseconds, typed arrays as plain ones (bytes as Buffer), no seq.
 import fs from "node:fs/promises";
 import rosbag from "@foxglove/rosbag";
-import rosbagNode from "@foxglove/rosbag/node.js";
 import { parse } from "@foxglove/rosmsg";
 import { MessageReader } from "@foxglove/rosmsg2-serialization";
 import { McapIndexedReader, McapStreamReader } from "@mcap/core";
@@ -10,7 +9,6 @@ import { decompress as unzstd } from "fzstd";
 import lz4 from "lz4js";
 
 const { Bag } = rosbag;
-const { FileReader } = rosbagNode;
 const ns = (time) => BigInt(time.sec) * 1000000000n + BigInt(time.nsec ?? time.nanosec);
 
 function plain(value) {
@@ -30,7 +28,9 @@ export async function readBag(path) {
     if (out.length !== size) throw new Error(`LZ4 chunk of ${out.length} bytes, ${size} announced`);
     return out;
   };
-  const bag = new Bag(new FileReader(path), { decompress: { lz4: lz4Frame } });
+  const bytes = await fs.readFile(path);
+  const file = { size: () => bytes.length, read: async (offset, size) => bytes.subarray(offset, offset + size) };
+  const bag = new Bag(file, { decompress: { lz4: lz4Frame } });
   await bag.open();
   const messages = [];
   for await (const event of bag.messageIterator()) {

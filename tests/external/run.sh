@@ -38,4 +38,10 @@ for world in corridor gate street room; do
   "$build/vsslam" world "$world" --out "data/$world.glb" >/dev/null
 done
 node check_worlds.mjs data/*.glb
+echo "== datasets"
+"$build/vsslam" export quick_room --set max_duration_s=3 --format bag,mcap,euroc,kitti,pcd,ply,tum --with camera \
+  --out data/quick_room --quiet
+node check_dataset.mjs data/quick_room data
+/usr/bin/python3 check_bag.py data/quick_room/*.bag
+rm -rf data/quick_room
 echo "external: all readers agree"

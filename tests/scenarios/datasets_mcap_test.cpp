@@ -132,6 +132,23 @@ TEST(OtherMcap, MayMixMessagesInChunksAndOutside) {
   EXPECT_THAT(numbers_in(*read_messages(file_of(file))), ElementsAre(0, 1, 2, 3, 4));
 }
 
+TEST(OtherMcap, WithAnyByteFlippedIsReadOrRefused) {
+  const std::string records = channel_records() + message_records();
+  const std::string bytes = read_file(file_of(records + chunk_record(records, "", records, 0)));
+  for (size_t at = 0; at < bytes.size(); at += 3)
+    for (const bool salvage : {false, true}) {
+      std::string flipped = bytes;
+      flipped[at] = static_cast<char>(flipped[at] ^ (at % 2 == 0 ? 0x80 : 0x01));
+      const fs::path file = scratch_folder() / "flipped.mcap";
+      write_file(file, flipped);
+      try {
+        numbers_in(*read_messages(file, {.salvage = salvage}));
+      } catch (const InputError& error) {
+        EXPECT_THAT(error.what(), HasSubstr(file.string() + ": ")) << at;
+      }
+    }
+}
+
 // Each chunk covers all the time, so all are open at once; only one may stay in memory.
 TEST(OtherMcap, OverlappingChunksAreReadInLittleMemory) {
   std::string records = channel_records();
