@@ -78,6 +78,13 @@ void decide_camera(ExportPlan& plan, const Extras& extras) {
         fmt::format("{} uses no camera: it is left out (--with camera keeps it)", plan.system->title));
 }
 
+void decide_orientation(ExportPlan& plan) {
+  bool& orientation = plan.facts.scenario.rig.sensors.imu.orientation;
+  if (plan.system == nullptr || !plan.system->orientation || orientation) return;
+  orientation = true;
+  plan.notes.push_back(fmt::format("{} needs the IMU's orientation: it is enabled", plan.system->title));
+}
+
 bool has_messages(const ExportPlan& plan) {
   return plan.has(DatasetFormat::bag) || plan.has(DatasetFormat::mcap);
 }
@@ -167,6 +174,7 @@ ExportPlan plan_export(const ExportRequest& request) {
   if (std::exchange(scenario.closed_loop, false))
     plan.notes.emplace_back("there is no estimator in an export: the robot drives by its true pose");
   decide_camera(plan, extras);
+  decide_orientation(plan);
   plan.facts.rig = calibration_of(scenario);
   if (plan.system != nullptr) plan.facts.names = plan.system->names;
   const std::string name =

@@ -114,7 +114,9 @@ RosbagOutput::RosbagOutput(const std::string& path) : state_(std::make_unique<St
 RosbagOutput::~RosbagOutput() {
   try {
     state_->bag.close();
-  } catch (...) {  // given up: nobody will see the file
+  } catch (...) {
+    // Given up: nobody will see the file. The bag's own destructor would throw once more, which ends the program.
+    (void)state_.release();
   }
 }
 

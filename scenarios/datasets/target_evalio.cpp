@@ -25,13 +25,8 @@ int columns(const LidarConfig& lidar) {
   return static_cast<int>(std::ceil(1 / (lidar.rate_hz * cycle_s))) + 8;
 }
 
-std::string class_text(const DatasetFacts& facts) {
-  const ImuCalibration& imu = facts.rig.imu;
-  const LidarCalibration& lidar = facts.rig.lidar;
-  const bool vlp16 = facts.scenario.rig.sensors.lidar.model == LidarModel::vlp16;
-  const SE3 T_imu_base = imu.T_base_imu.inverse();
-  return fmt::format(
-      R"(# Tells evalio of this dataset. Numbers are those of the simulated rig.
+constexpr const char* kClass =
+    R"(# Tells evalio of this dataset. Numbers are those of the simulated rig.
 from enum import auto
 from pathlib import Path
 
@@ -115,7 +110,15 @@ class VsslamDataset(Dataset):
 
     def files(self):
         return [str(HERE / "{bag}.bag"), str(HERE / "truth.tum")]
-)",
+)";
+
+std::string class_text(const DatasetFacts& facts) {
+  const ImuCalibration& imu = facts.rig.imu;
+  const LidarCalibration& lidar = facts.rig.lidar;
+  const bool vlp16 = facts.scenario.rig.sensors.lidar.model == LidarModel::vlp16;
+  const SE3 T_imu_base = imu.T_base_imu.inverse();
+  return fmt::format(
+      kClass,
       fmt::arg("cycle_s",
                1e-9 * static_cast<double>(laser_table(facts.scenario.rig.sensors.lidar.model).cycle_ns)),
       fmt::arg("sequence", "sequence"), fmt::arg("bag", facts.scenario.name),
@@ -143,7 +146,7 @@ std::string instructions(const DatasetFacts&) {
 }  // namespace
 
 TargetSystem evalio() {
-  return {"evalio", "evalio", DatasetFormat::bag, false, {}, configuration, instructions};
+  return {"evalio", "evalio", DatasetFormat::bag, false, false, {}, configuration, instructions};
 }
 
 }  // namespace vsslam

@@ -60,7 +60,7 @@ std::string instructions(const DatasetFacts& facts) {
 }  // namespace
 
 TargetSystem fast_lio() {
-  return {"fast-lio", "FAST-LIO", DatasetFormat::bag, false, {}, configuration, instructions};
+  return {"fast-lio", "FAST-LIO", DatasetFormat::bag, false, false, {}, configuration, instructions};
 }
 
 }  // namespace vsslam

@@ -30,7 +30,7 @@ std::string instructions(const DatasetFacts& facts) {
 }  // namespace
 
 TargetSystem kiss_icp() {
-  return {"kiss-icp", "KISS-ICP", DatasetFormat::bag, false, {}, configuration, instructions};
+  return {"kiss-icp", "KISS-ICP", DatasetFormat::bag, false, false, {}, configuration, instructions};
 }
 
 }  // namespace vsslam

@@ -53,7 +53,7 @@ std::string instructions(const DatasetFacts& facts) {
 }  // namespace
 
 TargetSystem lio_sam() {
-  return {"lio-sam", "LIO-SAM", DatasetFormat::bag, false, names(), configuration, instructions};
+  return {"lio-sam", "LIO-SAM", DatasetFormat::bag, false, true, names(), configuration, instructions};
 }
 
 }  // namespace vsslam

@@ -105,7 +105,7 @@ std::string instructions(const DatasetFacts& facts) {
 }  // namespace
 
 TargetSystem lvi_sam() {
-  return {"lvi-sam", "LVI-SAM", DatasetFormat::bag, true, names(), configuration, instructions};
+  return {"lvi-sam", "LVI-SAM", DatasetFormat::bag, true, true, names(), configuration, instructions};
 }
 
 }  // namespace vsslam

@@ -103,7 +103,7 @@ std::string instructions(const DatasetFacts& facts) {
 }  // namespace
 
 TargetSystem openvins() {
-  return {"openvins", "OpenVINS", DatasetFormat::bag, true, names(), configuration, instructions};
+  return {"openvins", "OpenVINS", DatasetFormat::bag, true, false, names(), configuration, instructions};
 }
 
 }  // namespace vsslam

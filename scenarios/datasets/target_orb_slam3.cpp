@@ -71,7 +71,7 @@ std::string instructions(const DatasetFacts& facts) {
 }  // namespace
 
 TargetSystem orb_slam3() {
-  return {"orb-slam3", "ORB-SLAM3", DatasetFormat::euroc, true, {}, configuration, instructions};
+  return {"orb-slam3", "ORB-SLAM3", DatasetFormat::euroc, true, false, {}, configuration, instructions};
 }
 
 }  // namespace vsslam

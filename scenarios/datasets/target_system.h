@@ -26,7 +26,8 @@ struct TargetSystem {
   std::string name;   ///< as on the command line
   std::string title;  ///< as its authors write it
   DatasetFormat format;
-  bool camera;  ///< it cannot do without
+  bool camera;       ///< it cannot do without
+  bool orientation;  ///< it cannot do without that of the IMU
   MessageNames names;
   std::vector<ExtraFile> (*configuration)(const DatasetFacts& facts);
   /// Markdown: how to start it on the dataset, which lies in the current folder.

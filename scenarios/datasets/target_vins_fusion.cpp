@@ -70,7 +70,7 @@ std::string instructions(const DatasetFacts& facts) {
 }  // namespace
 
 TargetSystem vins_fusion() {
-  return {"vins-fusion", "VINS-Fusion", DatasetFormat::bag, true, names(), configuration, instructions};
+  return {"vins-fusion", "VINS-Fusion", DatasetFormat::bag, true, false, names(), configuration, instructions};
 }
 
 }  // namespace vsslam

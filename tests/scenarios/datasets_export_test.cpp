@@ -2,7 +2,9 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
+#include <csignal>
 #include <cstring>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -242,6 +244,24 @@ TEST(Export, StoppedOrOutOfSpaceNothingIsFinished) {
   }
 }
 
+// A limit on the size of files stands for a disk that is full.
+TEST(Export, AFullDiskEndsItWithCode3AndNoFile) {
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  const auto signal_before = std::signal(SIGXFSZ, SIG_IGN);
+  for (const std::string format : {"bag", "mcap", "ply"}) {
+    const rlimit small{100'000, before.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &small);
+    const Outcome outcome = export_room("full_" + format, {"--format", format});
+    setrlimit(RLIMIT_FSIZE, &before);
+    EXPECT_EQ(outcome.code, kStopped) << format;
+    EXPECT_THAT(outcome.err, HasSubstr("write failed")) << format;
+    for (const auto& [name, bytes] : content(scratch_folder() / ("full_" + format)))
+      EXPECT_EQ(name, ".export-begun");
+  }
+  std::signal(SIGXFSZ, signal_before);
+}
+
 TEST(Export, SystemsDecideAboutTheCamera) {
   const auto plan = [](const std::string& system, const std::string& with = "") {
     return plan_export({.scenario = "quick_room_vio", .system = system, .with = with});
@@ -254,6 +274,11 @@ TEST(Export, SystemsDecideAboutTheCamera) {
   EXPECT_TRUE(plan_export(blind).facts.has_camera());
   EXPECT_THAT(plan_export(blind).notes, ::testing::ElementsAre(HasSubstr("OpenVINS needs a camera")));
   EXPECT_EQ(plan_export(blind).facts.folder, "out/datasets/quick_room-openvins");
+  const ExportPlan gyro = plan_export({.scenario = "quick_room",
+                                       .overrides = {{"rig.sensors.imu.orientation", "false"}},
+                                       .system = "lvi-sam"});
+  EXPECT_TRUE(gyro.facts.scenario.rig.sensors.imu.orientation);
+  EXPECT_THAT(gyro.notes, ::testing::Contains(HasSubstr("needs the IMU's orientation")));
   EXPECT_EQ(plan("orb-slam3").formats, std::vector{DatasetFormat::euroc});
 }
 
