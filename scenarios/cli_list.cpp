@@ -5,6 +5,7 @@
 
 #include "core/errors.h"
 #include "scenarios/cli.h"
+#include "scenarios/datasets/target_system.h"
 #include "scenarios/library_files.h"
 #include "scenarios/scenario.h"
 #include "scenarios/suite/suite.h"
@@ -54,6 +55,11 @@ int list(const Console& console) {
     json["methods"].push_back(method_name(method));
     text += fmt::format("  {}\n", method_name(method));
   }
+  text += "systems that export makes datasets for\n";
+  for (const TargetSystem& system : target_systems()) {
+    json["systems"].push_back(system.name);
+    text += fmt::format("  {}\n", system.name);
+  }
   console.out << (console.json ? json.dump(2) + "\n" : text);
   return kDone;
 }
@@ -61,7 +67,7 @@ int list(const Console& console) {
 }  // namespace
 
 void add_list_command(CLI::App& app, Console& console, Command& command) {
-  CLI::App* sub = app.add_subcommand("list", "scenarios, suites, worlds, rigs and methods");
+  CLI::App* sub = app.add_subcommand("list", "scenarios, suites, worlds, rigs, methods and systems to export for");
   add_common_options(*sub, console);
   sub->callback([&console, &command] { command = [&console] { return list(console); }; });
 }
