@@ -14,6 +14,8 @@ namespace vsslam {
 
 namespace {
 
+// For clouds of noisy floats level 3 takes half as long again, and saves a sixth of the bytes.
+constexpr int kZstdLevel = 1;
 // What grows first, then doubles up to what the chunk claims.
 constexpr uint64_t kFirstBytes = 1 << 20;
 
@@ -110,7 +112,7 @@ Decompressed decompress(std::string_view compression, std::string_view content, 
 
 std::string compress_zstd(std::string_view content) {
   std::string bytes(ZSTD_compressBound(content.size()), '\0');
-  const size_t size = ZSTD_compress(bytes.data(), bytes.size(), content.data(), content.size(), 3);
+  const size_t size = ZSTD_compress(bytes.data(), bytes.size(), content.data(), content.size(), kZstdLevel);
   if (ZSTD_isError(size)) throw ResourceError(fmt::format("zstd: {}", ZSTD_getErrorName(size)));
   bytes.resize(size);
   return bytes;

@@ -17,7 +17,7 @@ struct Decompressed {
 /// read before the break.
 Decompressed decompress(std::string_view compression, std::string_view content, uint64_t size);
 
-/// Level 3. The same bytes for the same content and library.
+/// The same bytes for the same content and library.
 std::string compress_zstd(std::string_view content);
 
 }  // namespace vsslam

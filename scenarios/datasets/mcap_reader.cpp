@@ -14,6 +14,15 @@ namespace {
 // Messages outside of chunks are read in runs of about so much.
 constexpr uint64_t kRunBytes = 1 << 20;
 
+RecordedChunk chunk_of(const McapChunkIndex& index) {
+  RecordedChunk chunk{index.offset, index.size, Time{static_cast<int64_t>(index.begin_ns)},
+                      Time{static_cast<int64_t>(index.end_ns)}};
+  if (index.message_indexes.empty()) return chunk;
+  chunk.connections.emplace();
+  for (const auto& [channel, place] : index.message_indexes) chunk.connections->push_back(channel);
+  return chunk;
+}
+
 class McapRecording : public ChunkedRecording {
  public:
   using ChunkedRecording::ChunkedRecording;
@@ -23,7 +32,15 @@ class McapRecording : public ChunkedRecording {
   ChunkContent load(const RecordedChunk& chunk) override;
 
  private:
+  struct Footer {
+    uint64_t at = 0, summary_at = 0;  // bytes; summary at 0: there is none
+    uint32_t crc = 0;                 // of the summary; 0: not known
+  };
+  Footer read_footer();
+  std::string read_summary(const Footer& footer);
   std::optional<RecordingIndex> from_summary();
+  std::pair<McapOp, uint64_t> record_at(uint64_t at);
+  void add_chunk(const RecordedChunk& chunk, RecordingIndex& index);
   void note(const McapRecord& record);
   void read_chunk(ChunkContent& content);
   void read_records(ChunkContent& content);
@@ -61,46 +78,50 @@ RecordingIndex McapRecording::index() {
   return index;
 }
 
+McapRecording::Footer McapRecording::read_footer() {
+  const uint64_t tail = kMcapRecordHeader + kMcapFooter + kMcapMagic.size();
+  const uint64_t at = file_.size() - std::min(tail, file_.size());
+  const std::string bytes = file_.read(at, kMcapRecordHeader + kMcapFooter);
+  std::string start;
+  put_number(start, static_cast<uint8_t>(McapOp::footer));
+  put_number(start, uint64_t{kMcapFooter});
+  if (!bytes.starts_with(start)) throw InputError(fmt::format("byte {}: no footer is here", at));
+  ByteCursor fields(std::string_view(bytes).substr(kMcapRecordHeader));
+  Footer footer{at, fields.number<uint64_t>(), 0};
+  fields.take(sizeof(uint64_t));  // where the summary's offsets are
+  footer.crc = fields.number<uint32_t>();
+  if (footer.summary_at > at)
+    throw InputError(fmt::format("byte {}: a summary at {} cannot be", at, footer.summary_at));
+  return footer;
+}
+
+/// The summary's records, without the footer.
+std::string McapRecording::read_summary(const Footer& footer) {
+  std::string summary = file_.read(footer.summary_at, file_.size() - footer.summary_at);
+  const size_t covered = summary.size() - kMcapMagic.size() - sizeof footer.crc;
+  if (footer.crc != 0 && footer.crc != crc32_of(std::string_view(summary).substr(0, covered)))
+    throw InputError(fmt::format("the summary at byte {} does not have its checksum", footer.summary_at));
+  summary.resize(footer.at - footer.summary_at);
+  return summary;
+}
+
 /// nullopt: the file has no index of its chunks.
 std::optional<RecordingIndex> McapRecording::from_summary() {
-  const uint64_t tail = kMcapRecordHeader + kMcapFooter + kMcapMagic.size();
-  const uint64_t footer_at = file_.size() - std::min(tail, file_.size());
-  const std::string footer_bytes = file_.read(footer_at, kMcapRecordHeader + kMcapFooter);
-  std::string expected;
-  put_number(expected, static_cast<uint8_t>(McapOp::footer));
-  put_number(expected, uint64_t{kMcapFooter});
-  if (!footer_bytes.starts_with(expected))
-    throw InputError(fmt::format("byte {}: no footer is here", footer_at));
-  ByteCursor fields(std::string_view(footer_bytes).substr(kMcapRecordHeader));
-  const auto summary_at = fields.number<uint64_t>();
-  fields.number<uint64_t>();
-  const auto crc = fields.number<uint32_t>();
-  if (summary_at == 0) return std::nullopt;
-  if (summary_at > footer_at)
-    throw InputError(fmt::format("byte {}: a summary at {} cannot be", footer_at, summary_at));
-
-  const std::string summary = file_.read(summary_at, file_.size() - summary_at);
-  const size_t covered = summary.size() - kMcapMagic.size() - sizeof crc;
-  if (crc != 0 && crc != crc32_of(std::string_view(summary).substr(0, covered)))
-    throw InputError(fmt::format("the summary at byte {} does not have its checksum", summary_at));
+  const Footer footer = read_footer();
+  if (footer.summary_at == 0) return std::nullopt;
+  const std::string summary = read_summary(footer);
   RecordingIndex index;
   std::optional<McapStatistics> statistics;
   try {
-    for (ByteCursor cursor(std::string_view(summary).substr(0, footer_at - summary_at)); cursor.left() > 0;) {
+    for (ByteCursor cursor(summary); cursor.left() > 0;) {
       const McapRecord record(cursor);
       note(record);
       if (record.op == McapOp::statistics) statistics = mcap_statistics(record.content);
-      if (record.op != McapOp::chunk_index) continue;
-      const McapChunkIndex chunk = mcap_chunk_index(record.content);
-      RecordedChunk& added = index.chunks.emplace_back();
-      added = {chunk.offset, chunk.size, Time{static_cast<int64_t>(chunk.begin_ns)},
-               Time{static_cast<int64_t>(chunk.end_ns)}};
-      if (chunk.message_indexes.empty()) continue;
-      added.connections.emplace();
-      for (const auto& [channel, place] : chunk.message_indexes) added.connections->push_back(channel);
+      if (record.op == McapOp::chunk_index)
+        index.chunks.push_back(chunk_of(mcap_chunk_index(record.content)));
     }
   } catch (const InputError& error) {
-    throw InputError(fmt::format("summary at byte {} is broken: {}", summary_at, error.what()));
+    throw InputError(fmt::format("summary at byte {} is broken: {}", footer.summary_at, error.what()));
   }
   if (!statistics || channels_.size() != statistics->channels || index.chunks.size() != statistics->chunks ||
       (index.chunks.empty() && statistics->messages > 0))
@@ -112,29 +133,23 @@ std::optional<RecordingIndex> McapRecording::from_summary() {
 
 RecordingIndex McapRecording::scan() {
   RecordingIndex index;
-  RecordedChunk run;  // records outside of chunks
   uint64_t at = kMcapMagic.size();
+  RecordedChunk run;  // records outside of chunks
   run.offset = at;
   try {
     for (bool ended = false; !ended && index.damage.empty();) {
-      const std::string header = file_.read(at, kMcapRecordHeader);
-      ByteCursor cursor(header);
-      const auto op = static_cast<McapOp>(cursor.number<uint8_t>());
-      const auto size = cursor.number<uint64_t>();
-      const uint64_t left = file_.size() - at - kMcapRecordHeader;
+      const auto [op, size] = record_at(at);
       if (op == McapOp::chunk) {
         finish_run(run, at, index);
-        const RecordedChunk chunk{at, kMcapRecordHeader + std::min(size, left), {}, {}};
-        const ChunkContent content = load(chunk);
-        count(chunk, content, index);
-        index.damage = content.damage;
-        run.offset = at + chunk.size;
+        run.size = std::min(size, file_.size() - at);
+        add_chunk(run, index);
+        run = {.offset = at + run.size};
       }
-      if (size > left)
-        throw InputError(fmt::format("a record of {} bytes, where the file has {}", size, left));
+      if (size > file_.size() - at)
+        throw InputError(fmt::format("a record of {} bytes, where the file has {}", size, file_.size() - at));
+      at += size;
       ended = op == McapOp::data_end;
-      at += kMcapRecordHeader + size;
-      if (at - run.offset >= kRunBytes || ended) finish_run(run, at, index);
+      if (ended || at - run.offset >= kRunBytes) finish_run(run, at, index);
     }
   } catch (const InputError& error) {
     finish_run(run, at, index);
@@ -144,16 +159,27 @@ RecordingIndex McapRecording::scan() {
   return index;
 }
 
+/// Opcode and size of the record at byte `at`, with its header.
+std::pair<McapOp, uint64_t> McapRecording::record_at(uint64_t at) {
+  const std::string header = file_.read(at, kMcapRecordHeader);
+  ByteCursor cursor(header);
+  const auto op = static_cast<McapOp>(cursor.number<uint8_t>());
+  // Broken sizes may be anything: the sum must not wrap around.
+  const auto size = std::min(cursor.number<uint64_t>(), uint64_t{1} << 62);
+  return {op, kMcapRecordHeader + size};
+}
+
+void McapRecording::add_chunk(const RecordedChunk& chunk, RecordingIndex& index) {
+  const ChunkContent content = load(chunk);
+  count(chunk, content, index);
+  if (index.damage.empty()) index.damage = content.damage;
+}
+
 /// Closes the run of records outside of chunks before byte `end`, and begins another there.
 void McapRecording::finish_run(RecordedChunk& run, uint64_t end, RecordingIndex& index) {
   run.size = end - std::min(end, run.offset);
-  if (run.size > 0) {
-    const ChunkContent content = load(run);
-    count(run, content, index);
-    if (index.damage.empty()) index.damage = content.damage;
-  }
-  run = {};
-  run.offset = end;
+  if (run.size > 0) add_chunk(run, index);
+  run = {.offset = end};
 }
 
 ChunkContent McapRecording::load(const RecordedChunk& chunk) {

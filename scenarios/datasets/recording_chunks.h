@@ -23,7 +23,7 @@ struct RecordedConnection {
 
 struct RecordedChunk {
   uint64_t offset = 0, size = 0;  ///< in the file, bytes
-  Time begin, end;
+  Time begin{}, end{};
   std::optional<std::vector<uint32_t>> connections{};  ///< that it has messages of; nullopt: not known
 };
 
