@@ -56,6 +56,7 @@ class McapWriter : public MessageWriter {
   McapChannel& channel_of(const Message& message, bool latched);
   uint16_t schema_of(const MessageContent& content);
   void close_chunk();
+  void append_message_indexes(McapChunkIndex& index);
   std::string summary() const;
   void append(std::string_view bytes) {
     file_.write(bytes);
@@ -130,6 +131,14 @@ void McapWriter::close_chunk() {
                        compressed.size(), chunk_.records.size()};
   append(record);
 
+  append_message_indexes(index);
+  chunks_.push_back(std::move(index));
+  statistics_.begin_ns = std::min(statistics_.begin_ns, chunk_.begin_ns);
+  statistics_.end_ns = std::max(statistics_.end_ns, chunk_.end_ns);
+  chunk_ = {};
+}
+
+void McapWriter::append_message_indexes(McapChunkIndex& index) {
   const uint64_t indexes_at = written_;
   for (const auto& [channel, places] : chunk_.index) {
     index.message_indexes[channel] = written_;
@@ -144,10 +153,6 @@ void McapWriter::close_chunk() {
     append(entry_record);
   }
   index.message_indexes_size = written_ - indexes_at;
-  chunks_.push_back(std::move(index));
-  statistics_.begin_ns = std::min(statistics_.begin_ns, chunk_.begin_ns);
-  statistics_.end_ns = std::max(statistics_.end_ns, chunk_.end_ns);
-  chunk_ = {};
 }
 
 std::string McapWriter::summary() const {

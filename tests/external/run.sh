@@ -32,6 +32,10 @@ echo "== messages"
 "$build/tests/write_messages" data/messages.bag data/messages.mcap
 node check_messages.mjs data/messages.bag data/messages.mcap
 /usr/bin/python3 check_bag.py data/messages.bag
+/usr/bin/python3 copy_bag.py data/messages.bag data/copy
+node copy_mcap.mjs data/messages.mcap data/copy
+"$build/tests/same_messages" data/messages.bag data/copy_*.bag
+"$build/tests/same_messages" data/messages.mcap data/copy_*.mcap
 
 echo "== worlds"
 for world in corridor gate street room; do
