@@ -146,6 +146,7 @@ int run_cli(const std::vector<std::string>& arguments, std::ostream& out, std::o
         app.require_subcommand(1);
         app.set_help_all_flag("--help-all", "help of every command");
         add_run_command(app, console, command);
+        add_replay_command(app, console, command);
         add_suite_command(app, console, command);
         add_export_command(app, console, command);
         add_world_command(app, console, command);

@@ -38,6 +38,7 @@ struct Console {
 using Command = std::function<int()>;
 
 void add_run_command(CLI::App& app, Console& console, Command& command);
+void add_replay_command(CLI::App& app, Console& console, Command& command);
 void add_suite_command(CLI::App& app, Console& console, Command& command);
 void add_world_command(CLI::App& app, Console& console, Command& command);
 void add_evaluate_command(CLI::App& app, Console& console, Command& command);

@@ -45,7 +45,7 @@ int list(const Console& console) {
     text += fmt::format("  {:<18} {}\n", name, description);
     json["suites"].push_back({{"name", name}, {"description", description}});
   }
-  for (const char* kind : {"worlds", "rigs"}) {
+  for (const char* kind : {"worlds", "rigs", "sheets"}) {
     json[kind] = library_names(kind);
     text += fmt::format("{}\n", kind);
     for (const std::string& name : library_names(kind)) text += fmt::format("  {}\n", name);
@@ -67,7 +67,8 @@ int list(const Console& console) {
 }  // namespace
 
 void add_list_command(CLI::App& app, Console& console, Command& command) {
-  CLI::App* sub = app.add_subcommand("list", "scenarios, suites, worlds, rigs, methods and systems to export for");
+  CLI::App* sub = app.add_subcommand(
+      "list", "scenarios, suites, worlds, rigs, sheets, methods and systems to export for");
   add_common_options(*sub, console);
   sub->callback([&console, &command] { command = [&console] { return list(console); }; });
 }

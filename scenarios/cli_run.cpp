@@ -30,13 +30,6 @@ Scenario resolve(const RunArguments& arguments) {
   return scenario;
 }
 
-// Names what was finished before an exception goes on its way.
-void name_finished(const Runner& runner, std::ostream& err) {
-  const std::vector<FinishedRun> runs = runner.finished();
-  err << (runs.empty() ? "No result was finished.\n" : "Finished and kept:\n");
-  for (const FinishedRun& run : runs) err << "  " << run.folder.string() << '\n';
-}
-
 int run(const RunArguments& arguments, const Console& console) {
   catch_interrupts();
   const Scenario scenario = resolve(arguments);
@@ -46,7 +39,7 @@ int run(const RunArguments& arguments, const Console& console) {
     Progress progress(console.progress_style(), console.err, clock, scenario.name);
     runner.run(interrupt_flag(), progress);
   } catch (...) {
-    name_finished(runner, console.err);
+    console.err << finished_text(runner.finished());
     throw;
   }
   const std::vector<FinishedRun> runs = runner.finished();

@@ -15,12 +15,20 @@ uint64_t hash(const std::string& bytes, uint64_t seed) {
   return seed;
 }
 
+uint64_t program() {
+  static const uint64_t hashed = hash(read_file("/proc/self/exe"), kStart);
+  return hashed;
+}
+
 }  // namespace
 
 std::string fingerprint(const Scenario& scenario) {
-  static const uint64_t program = hash(read_file("/proc/self/exe"), kStart);
   const std::string& file = scenario.world.file;
-  return fmt::format("{:016x}", file.empty() ? program : hash(read_file(file), program));
+  return fmt::format("{:016x}", file.empty() ? program() : hash(read_file(file), program()));
+}
+
+std::string fingerprint() {
+  return fmt::format("{:016x}", program());
 }
 
 }  // namespace vsslam

@@ -11,5 +11,7 @@ namespace vsslam {
 /// Results with the same fingerprint and the same scenario.yaml are the same. Throws InputError if the world's
 /// file cannot be read.
 std::string fingerprint(const Scenario& scenario);
+/// Of the program alone.
+std::string fingerprint();
 
 }  // namespace vsslam

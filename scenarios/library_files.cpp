@@ -17,6 +17,7 @@ namespace {
 fs::path library_folder(std::string_view kind) {
   if (kind == "suites") return home_folder() / "scenarios" / "suites";
   if (kind == "sheets") return home_folder() / "scenarios" / "datasets" / "library";
+  if (kind == "sheets") return home_folder() / "scenarios" / "datasets" / "library";
   const std::string room = kind == "rigs" ? "sensors" : std::string(kind);
   return home_folder() / room / "library";
 }

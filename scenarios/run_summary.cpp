@@ -25,7 +25,7 @@ Row row(const FinishedRun& run) {
   return {m.method,
           m.seed ? fmt::format("{}", *m.seed) : "-",
           number(m.duration_s, 1),
-          number(m.path_length_m, 1),
+          m.truth == Truth::none ? "-" : number(m.path_length_m, 1),
           number(m.ate_rmse_m, 3),
           number(m.ate_max_m, 3),
           number(m.rpe_10m_percent, 2),
@@ -33,8 +33,8 @@ Row row(const FinishedRun& run) {
           number(m.end_error_m, 3),
           number(m.odometry_ate_rmse_m, 3),
           number(m.map_error_mean_m, 3),
-          fmt::format("{}", m.loops.true_loops),
-          fmt::format("{}", m.loops.false_loops),
+          m.truth == Truth::none ? "-" : fmt::format("{}", m.loops.true_loops),
+          m.truth == Truth::none ? "-" : fmt::format("{}", m.loops.false_loops),
           number(m.loops.recall, 2),
           fmt::format("{}", m.descriptors.count),
           number(run.real_time_factor, 1)};
@@ -74,6 +74,12 @@ std::string summary_text(std::span<const FinishedRun> runs) {
   for (const FinishedRun& run : runs) text += expectations_of(run);
   for (const FinishedRun& run : runs)
     text += fmt::format("report: {}\n", (run.folder / "report.html").string());
+  return text;
+}
+
+std::string finished_text(std::span<const FinishedRun> runs) {
+  std::string text = runs.empty() ? "No result was finished.\n" : "Finished and kept:\n";
+  for (const FinishedRun& run : runs) text += fmt::format("  {}\n", run.folder.string());
   return text;
 }
 

@@ -11,6 +11,9 @@ namespace vsslam {
 /// A table of the main figures, the expectations with PASS or FAIL, and where the reports are.
 std::string summary_text(std::span<const FinishedRun> runs);
 
+/// What was finished before something went wrong.
+std::string finished_text(std::span<const FinishedRun> runs);
+
 /// A JSON list of the metrics.json that were written.
 std::string summary_json(std::span<const FinishedRun> runs);
 

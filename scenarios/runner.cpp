@@ -13,19 +13,39 @@ bool FinishedRun::as_expected() const {
 }
 
 struct Runner::Impl {
-  std::shared_ptr<ScenarioWorld> place;
+  using Pipelines = std::vector<std::unique_ptr<Pipeline>>;
+
   RunOptions options;
   std::vector<Method> methods;
+  int runs = 0;
+  std::function<void(const RunEvents&, Pipelines&)> add_pipelines;
   std::vector<FinishedRun> finished;
 
   RunEvents events(Progress& progress, ProgressState& state);
 };
 
 Runner::Runner(const Scenario& scenario, const RunOptions& options) : impl_(std::make_unique<Impl>()) {
-  impl_->place = std::make_shared<ScenarioWorld>(scenario);
+  const auto place = std::make_shared<ScenarioWorld>(scenario);
   impl_->options = options;
   impl_->methods = resolve_methods(scenario.methods);
-  impl_->place->world();
+  impl_->runs = static_cast<int>(impl_->methods.size() * scenario.seeds.size());
+  impl_->add_pipelines = [this, place](const RunEvents& events, Impl::Pipelines& pipelines) {
+    for (const uint64_t seed : place->scenario().seeds)
+      add_seed_runs(place, impl_->options.out, impl_->methods, seed, events, pipelines);
+  };
+  place->world();
+}
+
+Runner::Runner(std::unique_ptr<MeasurementSource> source, const std::vector<Method>& methods,
+               const RunOptions& options)
+    : impl_(std::make_unique<Impl>()) {
+  impl_->options = options;
+  impl_->methods = methods;
+  impl_->runs = static_cast<int>(methods.size());
+  const auto shared = std::make_shared<std::unique_ptr<MeasurementSource>>(std::move(source));
+  impl_->add_pipelines = [this, shared](const RunEvents& events, Impl::Pipelines& pipelines) {
+    pipelines.push_back(std::make_unique<EstimationRun>(std::move(*shared), impl_->methods, events));
+  };
 }
 
 Runner::~Runner() = default;
@@ -53,12 +73,10 @@ RunEvents Runner::Impl::events(Progress& progress, ProgressState& state) {
 
 void Runner::run(const std::atomic<bool>& stop, Progress& progress) {
   ProgressState state;
-  const std::vector<uint64_t>& seeds = impl_->place->scenario().seeds;
-  state.runs = static_cast<int>(impl_->methods.size() * seeds.size());
+  state.runs = impl_->runs;
   const RunEvents events = impl_->events(progress, state);
-  std::vector<std::unique_ptr<Pipeline>> pipelines;
-  for (const uint64_t seed : seeds) 
-    add_seed_runs(impl_->place, impl_->options.out, impl_->methods, seed, events, pipelines);
+  Impl::Pipelines pipelines;
+  impl_->add_pipelines(events, pipelines);
   const auto link = [this] {
     if (!impl_->finished.empty()) link_latest(impl_->options.out, finished().back().folder);
   };

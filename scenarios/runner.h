@@ -1,4 +1,4 @@
-// Runs a scenario: its methods and seeds, as pipelines over the cores, each result written as it is finished.
+// Runs a scenario or a recording: its methods and seeds, as pipelines over the cores, each result written as it is finished.
 //
 // Per seed the robot drives and its sensors measure once; the measurements go in chunks of simulated time to
 // one estimator per method. In closed loop the robot drives on the estimate, so each method drives its own.
@@ -7,6 +7,7 @@
 #include <atomic>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -24,17 +25,22 @@ struct RunOptions {
 /// A result folder that has been written.
 struct FinishedRun {
   Method method{};
-  uint64_t seed = 0;
+  uint64_t seed = 0;  ///< of a simulated run
   std::filesystem::path folder{};
   Metrics metrics{};
   double real_time_factor = 0;
   bool as_expected() const;  ///< the drive ended well and every expectation is met
 };
 
+class MeasurementSource;
+
 class Runner {
  public:
   /// Throws InputError if the world, the methods or the drive are not possible.
   Runner(const Scenario& scenario, const RunOptions& options);
+  /// A run of one source, for each of the methods.
+  Runner(std::unique_ptr<MeasurementSource> source, const std::vector<Method>& methods,
+         const RunOptions& options);
   ~Runner();
 
   /// Throws Interrupted, ResourceError or InputError; what was finished until then is in finished().

@@ -1,0 +1,255 @@
+#include "scenarios/datasets/cloud_decoder.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <initializer_list>
+#include <numbers>
+
+#include "core/errors.h"
+
+namespace vsslam {
+
+namespace {
+
+using Field = PointCloudMessage::Field;
+
+size_t bytes_of(uint8_t datatype) {
+  switch (datatype) {
+    case Field::i8:
+    case Field::u8:
+      return 1;
+    case Field::i16:
+    case Field::u16:
+      return 2;
+    case Field::i32:
+    case Field::u32:
+    case Field::f32:
+      return 4;
+    case Field::f64:
+      return 8;
+    default:
+      return 0;
+  }
+}
+
+template <class T>
+double value_at(const uint8_t* bytes) {
+  T value;
+  std::memcpy(&value, bytes, sizeof value);
+  return static_cast<double>(value);
+}
+
+double number_at(const uint8_t* bytes, uint8_t datatype) {
+  switch (datatype) {
+    case Field::i8:
+      return value_at<int8_t>(bytes);
+    case Field::u8:
+      return value_at<uint8_t>(bytes);
+    case Field::i16:
+      return value_at<int16_t>(bytes);
+    case Field::u16:
+      return value_at<uint16_t>(bytes);
+    case Field::i32:
+      return value_at<int32_t>(bytes);
+    case Field::u32:
+      return value_at<uint32_t>(bytes);
+    case Field::f32:
+      return value_at<float>(bytes);
+    default:
+      return value_at<double>(bytes);
+  }
+}
+
+const Field* find(const PointCloudMessage& cloud, std::initializer_list<std::string_view> names) {
+  for (const std::string_view name : names)
+    for (const Field& field : cloud.fields)
+      if (field.name == name) return &field;
+  return nullptr;
+}
+
+std::string names_of(const PointCloudMessage& cloud) {
+  std::vector<std::string> names;
+  for (const Field& field : cloud.fields) names.push_back(field.name);
+  return fmt::format("{}", fmt::join(names, " "));
+}
+
+void check_sizes(const PointCloudMessage& cloud, std::string_view place) {
+  if (cloud.is_bigendian)
+    throw InputError(fmt::format("{}: a cloud of big-endian numbers is not read", place));
+  const uint64_t row = uint64_t{cloud.point_step} * cloud.width,
+                 all = uint64_t{cloud.row_step} * cloud.height;
+  if (row > cloud.row_step || all > cloud.data.size())
+    throw InputError(
+        fmt::format("{}: expected {} x {} points of {} bytes in rows of {} bytes, got {} bytes of data",
+                    place, cloud.height, cloud.width, cloud.point_step, cloud.row_step, cloud.data.size()));
+  for (const Field& field : cloud.fields) {
+    const size_t bytes = bytes_of(field.datatype) * std::max<size_t>(1, field.count);
+    if (bytes == 0 || uint64_t{field.offset} + bytes > cloud.point_step)
+      throw InputError(
+          fmt::format("{}: field \"{}\" (type {}, offset {}) does not lie within the {} bytes of a point",
+                      place, field.name, field.datatype, field.offset, cloud.point_step));
+  }
+}
+
+double azimuth_rad(const LidarPoint& p) {
+  return std::atan2(static_cast<double>(p.y), static_cast<double>(p.x));
+}
+
+}  // namespace
+
+struct CloudDecoder::Layout {
+  const Field *x, *y, *z, *intensity, *ring, *time;
+};
+
+CloudDecoder::Layout CloudDecoder::layout_of(const PointCloudMessage& cloud, std::string_view place) const {
+  check_sizes(cloud, place);
+  Layout layout{.x = find(cloud, {"x"}),
+                .y = find(cloud, {"y"}),
+                .z = find(cloud, {"z"}),
+                .intensity = find(cloud, {"intensity", "intensities", "reflectivity", "i"}),
+                .ring = find(cloud, {"ring", "line", "channel", "laser_id"}),
+                .time = find(cloud, {"time", "t", "timestamp", "offset_time", "time_stamp", "time_offset"})};
+  if (layout.x == nullptr || layout.y == nullptr || layout.z == nullptr)
+    throw InputError(fmt::format("{}: expected the fields x y z, got: {}", place, names_of(cloud)));
+  return layout;
+}
+
+void CloudDecoder::note(const std::string& text) {
+  if (std::find(notes_.begin(), notes_.end(), text) == notes_.end()) notes_.push_back(text);
+}
+
+LidarScan CloudDecoder::decode(const PointCloudMessage& cloud, std::string_view place) {
+  const Layout layout = layout_of(cloud, place);
+  LidarScan scan{cloud.header.stamp, cloud.header.stamp, {}};
+  std::vector<double> times;
+  read_points(cloud, layout, place, scan, times);
+  if (layout.ring == nullptr) {
+    note("no field of rings: derived from the points' elevation");
+    rings_.fill(scan.points);
+  }
+  if (last_stamp_)
+    if (const double since_s = seconds_between(*last_stamp_, scan.stamp); since_s > 0.02 && since_s < 0.5)
+      period_s_ = since_s;
+  last_stamp_ = scan.stamp;
+  if (options_.undistorted) {
+    note("points count as undistorted: all as fired at the stamp");
+  } else if (layout.time == nullptr) {
+    note("no field of times: derived from the points' azimuth");
+    derive_times(scan);
+  } else {
+    set_times(scan, times, layout.time->datatype == Field::f32);
+  }
+  sort_by_time(scan);
+  if (!scan.points.empty())
+    scan.end = scan.stamp + Duration::from_seconds(static_cast<double>(scan.points.back().time_s));
+  return scan;
+}
+
+void CloudDecoder::read_points(const PointCloudMessage& cloud, const Layout& layout, std::string_view place,
+                               LidarScan& scan, std::vector<double>& times) {
+  scan.points.reserve(size_t{cloud.width} * cloud.height);
+  for (uint32_t row = 0; row < cloud.height; ++row) {
+    const uint8_t* point = cloud.data.data() + size_t{row} * cloud.row_step;
+    for (uint32_t i = 0; i < cloud.width; ++i, point += cloud.point_step) {
+      const auto number = [point](const Field* f) { return number_at(point + f->offset, f->datatype); };
+      LidarPoint p{.x = static_cast<float>(number(layout.x)),
+                   .y = static_cast<float>(number(layout.y)),
+                   .z = static_cast<float>(number(layout.z))};
+      if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) continue;
+      if (p.x == 0 && p.y == 0 && p.z == 0) continue;
+      if (layout.intensity != nullptr) p.intensity = static_cast<float>(number(layout.intensity));
+      if (layout.ring != nullptr) {
+        const double ring = number(layout.ring);
+        if (!(ring >= 0 && ring < options_.rings))
+          throw InputError(
+              fmt::format("{}: point {} is of ring {}, but the rig's sheet has {} rings (lidar.rings)", place,
+                          scan.points.size(), ring, options_.rings));
+        p.ring = static_cast<uint16_t>(ring);
+      }
+      if (layout.time != nullptr) times.push_back(number(layout.time));
+      scan.points.push_back(p);
+    }
+  }
+}
+
+// A scan lasts between 10 ms and 1.5 s.
+double CloudDecoder::unit_s(double span) const {
+  for (const double unit : {1.0, 1e-3, 1e-6, 1e-9})
+    if (span * unit >= 0.01 && span * unit <= 1.5) return unit;
+  return 0;
+}
+
+void CloudDecoder::set_times(LidarScan& scan, std::vector<double>& times, bool seconds_as_float) {
+  if (times.empty()) return;
+  const auto [low, high] = std::minmax_element(times.begin(), times.end());
+  const double first = *low, span = *high - *low;
+  if (!std::isfinite(first) || !std::isfinite(span) || (span == 0 && !unit_s_)) {
+    note("the field of times says nothing: derived from the points' azimuth");
+    return derive_times(scan);
+  }
+  if (!unit_s_) {
+    const double unit = unit_s(span);
+    if (unit == 0 || (seconds_as_float && unit != 1))
+      note(fmt::format("a scan lasts {} by its points' times: taken as {}", span,
+                       unit == 0 ? "seconds" : fmt::format("{} s", unit)));
+    unit_s_ = unit == 0 ? 1 : unit;
+  }
+  // Counted from the stamp, or from 1970, or from anywhere: then the stamp is the first point's.
+  const double stamp_s = scan.stamp.seconds(), first_s = first * *unit_s_;
+  double zero = 0;
+  if (std::abs(first_s) > 10 && std::abs(first_s - stamp_s) <= 10) {
+    zero = stamp_s / *unit_s_;
+  } else if (std::abs(first_s) > 10) {
+    note(
+        "the points' times are on another clock than the stamps: the first point's is taken for the stamp's");
+    zero = first;
+  }
+  double shift_s = 0;
+  if (const double offset_s = (first - zero) * *unit_s_; offset_s < 0) {
+    if (offset_s < -1e-3) note("stamps are not at the first point: moved there");
+    shift_s = -offset_s;
+    scan.stamp = scan.stamp - Duration::from_seconds(shift_s);
+  }
+  for (size_t i = 0; i < times.size(); ++i)
+    scan.points[i].time_s = static_cast<float>((times[i] - zero) * *unit_s_ + shift_s);
+}
+
+void CloudDecoder::derive_times(LidarScan& scan) {
+  times_from_azimuth(scan, period_s_);
+}
+
+void times_from_azimuth(LidarScan& scan, double period_s) {
+  if (scan.points.empty()) return;
+  constexpr double kTurn = 2 * std::numbers::pi;
+  const double first_rad = azimuth_rad(scan.points.front());
+  const size_t n = scan.points.size();
+  const auto place = [n](size_t i) { return static_cast<double>(i) / static_cast<double>(n); };
+  std::vector<double> turned(n);  // of a revolution, clockwise, 0 .. 1
+  size_t together = 0;
+  for (size_t i = 0; i < n; ++i) {
+    const double share = (first_rad - azimuth_rad(scan.points[i])) / kTurn;
+    turned[i] = share - std::floor(share);
+    const double apart = std::abs(turned[i] - place(i));
+    together += std::min(apart, 1 - apart) < 0.35;
+  }
+  // Points in order of firing turn as their number grows. Some then lie a little before the first, or beyond a turn.
+  const bool in_order = static_cast<double>(together) >= 0.9 * static_cast<double>(n);
+  for (size_t i = 0; i < n; ++i) {
+    double share = turned[i];
+    if (in_order && place(i) < 0.25 && share > 0.75) share = 0;
+    if (in_order && place(i) > 0.75 && share < 0.25) share += 1;
+    scan.points[i].time_s = static_cast<float>(share * period_s);
+  }
+}
+
+void sort_by_time(LidarScan& scan) {
+  const auto earlier = [](const LidarPoint& a, const LidarPoint& b) { return a.time_s < b.time_s; };
+  if (!std::is_sorted(scan.points.begin(), scan.points.end(), earlier))
+    std::stable_sort(scan.points.begin(), scan.points.end(), earlier);
+}
+
+}  // namespace vsslam

@@ -1,0 +1,59 @@
+// Point clouds of other people's drivers as scans: finds out what each field means, once, and says so.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/samples.h"
+#include "scenarios/datasets/messages.h"
+#include "scenarios/datasets/ring_finder.h"
+
+namespace vsslam {
+
+/// Clouds of one topic, in order. Needed: x, y, z. Used if there: an intensity; the ring, else derived from elevation;
+/// the time of each point, else derived from azimuth (the LiDAR turns clockwise, seen from above).
+///
+/// Times may be seconds, milliseconds, microseconds or nanoseconds (told apart by how long the scan lasts), counted from
+/// the stamp, from 1970 or from anywhere. A stamp at the end of the scan is moved to its first point.
+class CloudDecoder {
+ public:
+  struct Options {
+    int rings = 16;
+    bool undistorted = false;  ///< every point counts as fired at the stamp
+  };
+  explicit CloudDecoder(const Options& options) : options_(options), rings_(options.rings) {}
+
+  /// Points that are not finite, or at the origin, are dropped; the rest is in order of time. scan.end is the last
+  /// point's time. Throws InputError that starts with `place`.
+  LidarScan decode(const PointCloudMessage& cloud, std::string_view place);
+  /// Fields that are missing and what stands for them.
+  const std::vector<std::string>& notes() const { return notes_; }
+
+ private:
+  struct Layout;
+  Layout layout_of(const PointCloudMessage& cloud, std::string_view place) const;
+  void read_points(const PointCloudMessage& cloud, const Layout& layout, std::string_view place,
+                   LidarScan& scan, std::vector<double>& times);
+  void set_times(LidarScan& scan, std::vector<double>& times, bool seconds_as_float);
+  void derive_times(LidarScan& scan);
+  double unit_s(double span) const;
+  void note(const std::string& text);
+
+  Options options_;
+  RingFinder rings_;
+  std::optional<double> unit_s_;
+  std::optional<Time> last_stamp_;
+  double period_s_ = 0.1;
+  std::vector<std::string> notes_;
+};
+
+/// Revolutions of points without times: fills time_s from azimuth, `period_s` for a whole turn. Points in order of firing
+/// may turn a little more than once; others, ring by ring, turn once each.
+void times_from_azimuth(LidarScan& scan, double period_s);
+
+/// Sorts by time_s unless it is sorted; points of the same time keep their order.
+void sort_by_time(LidarScan& scan);
+
+}  // namespace vsslam

@@ -1,0 +1,135 @@
+#include "scenarios/datasets/message_recording.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "core/errors.h"
+#include "scenarios/datasets/image_decoder.h"
+
+namespace vsslam {
+
+namespace {
+
+constexpr Duration kScanSlack{5'000'000}, kExposureSlack{40'000'000};
+constexpr int kWeighed = 200;  // samples
+
+// Times of points are rounded: the last may be a little after the end.
+Time end_of(Time last, Time recorded, Duration slack) {
+  constexpr Duration kRounding{1000};
+  return recorded >= last - kRounding && recorded - last <= slack ? recorded : last;
+}
+
+std::string role_of(const TopicChoice& topics, const std::string& name) {
+  for (const auto& [sensor, topic] : topics)
+    if (topic == name) return sensor;
+  return {};
+}
+
+}  // namespace
+
+ImuSample imu_of_message(const ImuMessage& message) {
+  ImuSample sample{message.header.stamp, message.angular_velocity, message.linear_acceleration, std::nullopt};
+  // All zero: what drivers leave that never set it; -1: not measured.
+  const double norm = message.orientation.norm();
+  if (message.orientation_covariance[0] >= 0 && norm > 0.9 && norm < 1.1 &&
+      (message.orientation_covariance[0] > 0 || !message.orientation.isApprox(Quat::Identity())))
+    sample.q_earth_imu = message.orientation.normalized();
+  return sample;
+}
+
+MessageRecording::MessageRecording(std::unique_ptr<MessageReader> reader, std::string file,
+                                   TopicChoice topics, const RigCalibration& rig,
+                                   const CloudDecoder::Options& clouds, std::vector<std::string> notes,
+                                   const std::vector<RecordedTopic>& all)
+    : reader_(std::move(reader)),
+      file_(std::move(file)),
+      topics_(std::move(topics)),
+      rig_(rig),
+      clouds_(clouds),
+      twists_(rig.wheels),
+      notes_(std::move(notes)) {
+  facts_.format = "messages";
+  facts_.expected_duration_s = seconds_between(reader_->begin(), reader_->end());
+  for (const RecordedTopic& topic : all)
+    facts_.streams.push_back({topic.name, topic.type, topic.messages, role_of(topics_, topic.name)});
+  for (size_t i = 0; i < kSensors; ++i) facts_.has[i] = topics_.contains(kSensorNames[i]);
+}
+
+std::optional<RecordedSample> MessageRecording::next() {
+  while (const std::optional<Message> message = reader_->next()) {
+    const std::string role = role_of(topics_, message->topic);
+    if (role.empty()) continue;
+    const std::string place =
+        fmt::format("{}: {} message {}", file_, message->topic, read_[message->topic]++);
+    if (role == "truth") {
+      add_truth(*message);
+    } else if (auto sample = sample_of(*message, place)) {
+      return sample;
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<RecordedSample> MessageRecording::sample_of(const Message& message, const std::string& place) {
+  const auto ends_at_stamp = [](auto sample) { return RecordedSample{sample, sample.stamp}; };
+  const auto picture = [&](CameraFrame frame) {
+    check_image_size(frame, rig_.camera, place);
+    const Time end = end_of(frame.stamp, message.recorded, kExposureSlack);
+    return RecordedSample{std::move(frame), end};
+  };
+  if (const auto* imu = std::get_if<ImuMessage>(&message.content)) {
+    const ImuSample sample = imu_of_message(*imu);
+    weigh(sample);
+    return ends_at_stamp(sample);
+  }
+  if (const auto* joints = std::get_if<JointStateMessage>(&message.content)) {
+    const auto sample = wheels_of_joints(*joints);
+    return sample ? std::optional(ends_at_stamp(*sample)) : std::nullopt;
+  }
+  if (const auto* odometry = std::get_if<OdometryMessage>(&message.content))
+    return ends_at_stamp(twists_.add(*odometry));
+  if (const auto* image = std::get_if<ImageMessage>(&message.content))
+    return picture(decode_image(*image, place));
+  if (const auto* image = std::get_if<CompressedImageMessage>(&message.content))
+    return picture(decode_compressed(*image, place));
+  if (const auto* cloud = std::get_if<PointCloudMessage>(&message.content)) {
+    LidarScan scan = clouds_.decode(*cloud, place);
+    const Time end = scan.end = end_of(scan.end, message.recorded, kScanSlack);
+    return RecordedSample{std::move(scan), end};
+  }
+  return std::nullopt;
+}
+
+void MessageRecording::add_truth(const Message& message) {
+  const auto add = [this](Time stamp, const SE3& T_world_base) {
+    if (truth_world_base_.empty() || stamp > truth_world_base_.back().stamp)
+      truth_world_base_.push_back({stamp, T_world_base});
+  };
+  if (const auto* odometry = std::get_if<OdometryMessage>(&message.content))
+    add(odometry->header.stamp, odometry->T_parent_child);
+  if (const auto* pose = std::get_if<PoseStampedMessage>(&message.content))
+    add(pose->header.stamp, pose->T_parent_child);
+}
+
+// Some drivers give the specific force in g.
+void MessageRecording::weigh(const ImuSample& sample) {
+  if (accels_ == kWeighed || !sample.accel_mps2.allFinite()) return;
+  accel_sum_mps2_ += sample.accel_mps2.norm();
+  if (++accels_ < kWeighed) return;
+  const double mean_mps2 = accel_sum_mps2_ / kWeighed;
+  if (mean_mps2 < 5 || mean_mps2 > 15)
+    notes_.push_back(
+        fmt::format("imu: the specific force is {:.2f} m/s^2 on average, not about 9.8{}", mean_mps2,
+                    mean_mps2 > 0.5 && mean_mps2 < 2 ? ": given in g? It is taken as it is" : ""));
+}
+
+std::vector<std::string> MessageRecording::notes() const {
+  std::vector<std::string> notes = notes_;
+  for (const std::string& note : clouds_.notes()) notes.push_back("lidar: " + note);
+  if (!reader_->damage().empty()) notes.push_back("damaged: " + reader_->damage());
+  return notes;
+}
+
+}  // namespace vsslam

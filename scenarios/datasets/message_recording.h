@@ -1,0 +1,52 @@
+// The messages of a bag or an MCAP file as samples.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+
+#include "core/calibration.h"
+#include "scenarios/datasets/cloud_decoder.h"
+#include "scenarios/datasets/message_file.h"
+#include "scenarios/datasets/recording.h"
+#include "scenarios/datasets/topic_choice.h"
+#include "scenarios/datasets/wheel_decoder.h"
+
+namespace vsslam {
+
+/// The end of an acquisition is taken from when its message was recorded, if that is no more than 5 ms after a scan's
+/// last point, or 40 ms after the middle of an image's exposure; else it is that point, or that middle.
+class MessageRecording final : public Recording {
+ public:
+  /// `reader` delivers the chosen topics; `all` are listed in the facts.
+  MessageRecording(std::unique_ptr<MessageReader> reader, std::string file, TopicChoice topics,
+                   const RigCalibration& rig, const CloudDecoder::Options& clouds,
+                   std::vector<std::string> notes, const std::vector<RecordedTopic>& all);
+
+  const RecordingFacts& facts() const override { return facts_; }
+  std::optional<RecordedSample> next() override;
+  const std::vector<StampedPose>& truth_world_base() const override { return truth_world_base_; }
+  std::vector<std::string> notes() const override;
+
+ private:
+  std::optional<RecordedSample> sample_of(const Message& message, const std::string& place);
+  void add_truth(const Message& message);
+  void weigh(const ImuSample& sample);
+
+  std::unique_ptr<MessageReader> reader_;
+  std::string file_;
+  TopicChoice topics_;
+  RigCalibration rig_;
+  CloudDecoder clouds_;
+  TwistIntegrator twists_;
+  RecordingFacts facts_;
+  std::vector<StampedPose> truth_world_base_;
+  std::map<std::string, uint64_t> read_;  // messages, by topic
+  std::vector<std::string> notes_;
+  double accel_sum_mps2_ = 0;
+  int accels_ = 0;
+};
+
+ImuSample imu_of_message(const ImuMessage& message);
+
+}  // namespace vsslam

@@ -1,0 +1,66 @@
+// Puts the samples of a recording in order, and keeps out what the estimator must not see.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "scenarios/datasets/recording.h"
+
+namespace vsslam {
+
+/// What became of one sensor's samples.
+struct SampleCounts {
+  int64_t used = 0;
+  int64_t late = 0;        ///< dropped: a later one had gone its way
+  int64_t duplicates = 0;  ///< dropped: the same stamp again, or an earlier one
+  int64_t empty = 0;       ///< dropped: scans without points
+  int64_t gaps = 0;        ///< intervals of more than three usual ones
+  double longest_gap_s = 0;
+  std::optional<Time> first_gap;  ///< the stamp before it, as recorded
+};
+
+/// Samples in order of the end of their acquisition (ties: IMU, wheels, LiDAR, camera), as far as a window of time can
+/// put them in order. Stamps are counted from a whole second, that of the earliest sample in the first window. Holds no
+/// more than the window's samples.
+class SampleOrder {
+ public:
+  explicit SampleOrder(Recording& recording, Duration window = {1'000'000'000})
+      : recording_(recording), window_(window) {}
+
+  std::optional<RecordedSample> next();
+  /// Add it to a stamp to get the recorded one. Known after the first sample.
+  Duration epoch() const { return epoch_.value_or(Duration{}); }
+  const SampleCounts& counts(size_t sensor) const { return counts_[sensor]; }
+
+ private:
+  struct Intervals {
+    std::optional<Time> last;
+    std::vector<int64_t> recent_ns;
+    size_t next = 0;
+    std::optional<int64_t> usual_ns() const;
+    void add(int64_t ns);
+  };
+  using Key = std::tuple<Time, size_t, int64_t>;  // end, sensor, number of arrival
+
+  void fill();
+  bool accept(const RecordedSample& sample);
+  void watch(size_t sensor, Time stamp);
+  RecordedSample counted_from_epoch(RecordedSample sample) const;
+
+  Recording& recording_;
+  Duration window_;
+  std::map<Key, RecordedSample> waiting_;
+  std::optional<Time> newest_, released_;
+  std::optional<Duration> epoch_;
+  int64_t arrived_ = 0;
+  bool ended_ = false;
+  std::array<SampleCounts, kSensors> counts_{};
+  std::array<Intervals, kSensors> intervals_{};
+};
+
+}  // namespace vsslam
