@@ -7,6 +7,8 @@
 
 namespace vsslam {
 
+/// With a point, always: Python's YAML takes 1e-05 for a text, OpenCV's 1 for a whole number.
+std::string real_text(double value);
 /// "r00, r01, r02,\n<indent>r10, ..." row by row.
 std::string matrix_text(const Mat3& R, const std::string& indent);
 /// The same of the 4 x 4 matrix.

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "scenarios/datasets/configuration_text.h"
+
 namespace vsslam {
 
 namespace fs = std::filesystem;
@@ -9,11 +11,7 @@ namespace fs = std::filesystem;
 namespace {
 
 std::string matrix_yaml(const SE3& T) {
-  const Eigen::Matrix4d m = T.matrix4();
-  std::string rows;
-  for (int r = 0; r < 4; ++r)
-    rows += fmt::format("{}{}, {}, {}, {}", r == 0 ? "" : ",\n         ", m(r, 0), m(r, 1), m(r, 2), m(r, 3));
-  return fmt::format("T_BS:\n  cols: 4\n  rows: 4\n  data: [{}]\n", rows);
+  return fmt::format("T_BS:\n  cols: 4\n  rows: 4\n  data: [{}]\n", matrix_text(T, "         "));
 }
 
 std::string camera_yaml(const RigCalibration& rig) {
@@ -25,7 +23,9 @@ std::string camera_yaml(const RigCalibration& rig) {
              "rate_hz: {}\nresolution: [{}, {}]\ncamera_model: pinhole\n"
              "intrinsics: [{}, {}, {}, {}]  # fu, fv, cu, cv (px)\ndistortion_model: radial-tangential\n"
              "distortion_coefficients: [{}, {}, {}, {}]\n",
-             c.rate_hz, c.width_px, c.height_px, c.fx_px, c.fy_px, c.cx_px, c.cy_px, c.k1, c.k2, c.p1, c.p2);
+             real_text(c.rate_hz), c.width_px, c.height_px, real_text(c.fx_px), real_text(c.fy_px),
+             real_text(c.cx_px), real_text(c.cy_px), real_text(c.k1), real_text(c.k2), real_text(c.p1),
+             real_text(c.p2));
 }
 
 std::string imu_yaml(const ImuCalibration& imu) {
@@ -35,8 +35,9 @@ std::string imu_yaml(const ImuCalibration& imu) {
              "gyroscope_random_walk: {}  # rad/s^2/sqrt(Hz)\naccelerometer_noise_density: {}  # "
              "m/s^2/sqrt(Hz)\n"
              "accelerometer_random_walk: {}  # m/s^3/sqrt(Hz)\n",
-             imu.rate_hz, imu.gyro_noise_radps_rthz, imu.gyro_bias_walk_radps2_rthz,
-             imu.accel_noise_mps2_rthz, imu.accel_bias_walk_mps3_rthz);
+             real_text(imu.rate_hz), real_text(imu.gyro_noise_radps_rthz),
+             real_text(imu.gyro_bias_walk_radps2_rthz), real_text(imu.accel_noise_mps2_rthz),
+             real_text(imu.accel_bias_walk_mps3_rthz));
 }
 
 std::string row(const Vec3& v) {

@@ -21,9 +21,10 @@ std::string loam_sensor_settings(const DatasetFacts& facts) {
       "  # LiDAR axes. extrinsicRPY is its inverse: the device's orientation is multiplied by it from the "
       "right.\n"
       "  extrinsicTrans: [{}]\n  extrinsicRot: [{}]\n  extrinsicRPY: [{}]\n\n",
-      facts.rig.lidar.rings, imu.accel_noise_mps2_rthz, imu.gyro_noise_radps_rthz,
-      imu.accel_bias_walk_mps3_rthz, imu.gyro_bias_walk_radps2_rthz, imu.gravity_mps2,
-      vector_text(T_lidar_imu.translation), matrix_text(T_lidar_imu.matrix3(), "                 "),
+      facts.rig.lidar.rings, real_text(imu.accel_noise_mps2_rthz), real_text(imu.gyro_noise_radps_rthz),
+      real_text(imu.accel_bias_walk_mps3_rthz), real_text(imu.gyro_bias_walk_radps2_rthz),
+      real_text(imu.gravity_mps2), vector_text(T_lidar_imu.translation),
+      matrix_text(T_lidar_imu.matrix3(), "                 "),
       matrix_text(T_lidar_imu.inverse().matrix3(), "                 "));
 }
 

@@ -12,7 +12,7 @@ namespace vsslam {
 namespace {
 
 std::string covariance(double density, double rate_hz) {
-  return fmt::format("{}", std::pow(per_sample(density, rate_hz), 2));
+  return real_text(std::pow(per_sample(density, rate_hz), 2));
 }
 
 std::vector<ExtraFile> configuration(const DatasetFacts& facts) {
@@ -35,10 +35,10 @@ std::vector<ExtraFile> configuration(const DatasetFacts& facts) {
       "publish:\n    path_en: true\n    scan_publish_en: true\n    dense_publish_en: true\n"
       "    scan_bodyframe_pub_en: true\n\npcd_save:\n    pcd_save_en: false\n    interval: -1\n",
       facts.names.points, facts.names.imu, facts.rig.lidar.rings, facts.scenario.rig.sensors.lidar.rate_hz,
-      facts.rig.lidar.min_range_m, covariance(imu.accel_noise_mps2_rthz, imu.rate_hz),
+      real_text(facts.rig.lidar.min_range_m), covariance(imu.accel_noise_mps2_rthz, imu.rate_hz),
       covariance(imu.gyro_noise_radps_rthz, imu.rate_hz),
       covariance(imu.accel_bias_walk_mps3_rthz, imu.rate_hz),
-      covariance(imu.gyro_bias_walk_radps2_rthz, imu.rate_hz), facts.rig.lidar.max_range_m,
+      covariance(imu.gyro_bias_walk_radps2_rthz, imu.rate_hz), real_text(facts.rig.lidar.max_range_m),
       vector_text(T_imu_lidar.translation), matrix_text(T_imu_lidar.matrix3(), "                  "));
   return {{"fast_lio/velodyne.yaml", text}};
 }

@@ -1,6 +1,7 @@
 // KISS-ICP (Vizzo et al., RA-L 2023), github.com/PRBonn/kiss-icp. Keys: its config/advanced.yaml.
 #include <fmt/format.h>
 
+#include "scenarios/datasets/configuration_text.h"
 #include "scenarios/datasets/target_configurations.h"
 
 namespace vsslam {
@@ -12,7 +13,7 @@ std::vector<ExtraFile> configuration(const DatasetFacts& facts) {
            fmt::format("# KISS-ICP's parameters for this dataset; the rest are its defaults.\n"
                        "out_dir: \"results\"\n\ndata:\n  deskew: True\n  max_range: {}\n  min_range: {}\n\n"
                        "mapping:\n  max_points_per_voxel: 20\n",
-                       facts.rig.lidar.max_range_m, facts.rig.lidar.min_range_m)}};
+                       real_text(facts.rig.lidar.max_range_m), real_text(facts.rig.lidar.min_range_m))}};
 }
 
 std::string instructions(const DatasetFacts& facts) {

@@ -34,7 +34,7 @@ std::vector<ExtraFile> configuration(const DatasetFacts& facts) {
           facts.names.points, facts.names.imu, facts.names.lidar_frame, facts.names.lidar_frame) +
       loam_sensor_settings(facts) +
       fmt::format("  lidarMinRange: {}\n  lidarMaxRange: {}\n  imuRPYWeight: 0.01\n\n",
-                  facts.rig.lidar.min_range_m, facts.rig.lidar.max_range_m) +
+                  real_text(facts.rig.lidar.min_range_m), real_text(facts.rig.lidar.max_range_m)) +
       loam_mapping_settings();
   return {{"lio_sam/params.yaml", text}};
 }

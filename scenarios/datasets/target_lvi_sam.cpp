@@ -40,7 +40,8 @@ std::string lidar_to_camera(const DatasetFacts& facts) {
       "# Where the LiDAR is in the camera, with axes x forward, y left, z up: m, rad (roll, pitch, yaw).\n"
       "lidar_to_cam_tx: {}\nlidar_to_cam_ty: {}\nlidar_to_cam_tz: {}\n"
       "lidar_to_cam_rx: {}\nlidar_to_cam_ry: {}\nlidar_to_cam_rz: {}\n\n",
-      t.x(), t.y(), t.z(), rpy_rad.x(), rpy_rad.y(), rpy_rad.z());
+      real_text(t.x()), real_text(t.y()), real_text(t.z()), real_text(rpy_rad.x()), real_text(rpy_rad.y()),
+      real_text(rpy_rad.z()));
 }
 
 std::string camera_model(const CameraCalibration& c) {
@@ -49,7 +50,8 @@ std::string camera_model(const CameraCalibration& c) {
       "distortion_parameters:\n   k1: {}\n   k2: {}\n   p1: {}\n   p2: {}\n"
       "projection_parameters:\n   fx: {}\n   fy: {}\n   cx: {}\n   cy: {}\n"
       "fisheye_mask: \"/config/fisheye_mask_720x540.jpg\"  # not used: fisheye is 0\n\n",
-      c.width_px, c.height_px, c.k1, c.k2, c.p1, c.p2, c.fx_px, c.fy_px, c.cx_px, c.cy_px);
+      c.width_px, c.height_px, real_text(c.k1), real_text(c.k2), real_text(c.p1), real_text(c.p2),
+      real_text(c.fx_px), real_text(c.fy_px), real_text(c.cx_px), real_text(c.cy_px));
 }
 
 std::string imu_settings(const DatasetFacts& facts) {
@@ -62,9 +64,10 @@ std::string imu_settings(const DatasetFacts& facts) {
       "# T_imu_camera, exact.\nestimate_extrinsic: 0\n"
       "extrinsicRotation: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n   data: [{}]\n"
       "extrinsicTranslation: !!opencv-matrix\n   rows: 3\n   cols: 1\n   dt: d\n   data: [{}]\n\n",
-      per_sample(imu.accel_noise_mps2_rthz, imu.rate_hz), per_sample(imu.gyro_noise_radps_rthz, imu.rate_hz),
-      per_sample(imu.accel_bias_walk_mps3_rthz, imu.rate_hz),
-      per_sample(imu.gyro_bias_walk_radps2_rthz, imu.rate_hz), imu.gravity_mps2,
+      real_text(per_sample(imu.accel_noise_mps2_rthz, imu.rate_hz)),
+      real_text(per_sample(imu.gyro_noise_radps_rthz, imu.rate_hz)),
+      real_text(per_sample(imu.accel_bias_walk_mps3_rthz, imu.rate_hz)),
+      real_text(per_sample(imu.gyro_bias_walk_radps2_rthz, imu.rate_hz)), real_text(imu.gravity_mps2),
       matrix_text(T_imu_camera.matrix3(), "          "), vector_text(T_imu_camera.translation));
 }
 

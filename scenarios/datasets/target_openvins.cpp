@@ -29,8 +29,9 @@ std::string imu_chain(const DatasetFacts& facts) {
       "  rostopic: {}\n  time_offset: 0.0\n  update_rate: {}\n  model: \"kalibr\"\n"
       "  Tw:\n{}  R_IMUtoGYRO:\n{}  Ta:\n{}  R_IMUtoACC:\n{}"
       "  Tg:\n    - [0.0, 0.0, 0.0]\n    - [0.0, 0.0, 0.0]\n    - [0.0, 0.0, 0.0]\n",
-      kalibr_rows(SE3(), "    "), imu.accel_noise_mps2_rthz, imu.accel_bias_walk_mps3_rthz,
-      imu.gyro_noise_radps_rthz, imu.gyro_bias_walk_radps2_rthz, facts.names.imu, imu.rate_hz, kIdentity,
+      kalibr_rows(SE3(), "    "), real_text(imu.accel_noise_mps2_rthz),
+      real_text(imu.accel_bias_walk_mps3_rthz), real_text(imu.gyro_noise_radps_rthz),
+      real_text(imu.gyro_bias_walk_radps2_rthz), facts.names.imu, real_text(imu.rate_hz), kIdentity,
       kIdentity, kIdentity, kIdentity);
 }
 
@@ -42,8 +43,9 @@ std::string camera_chain(const DatasetFacts& facts) {
       "  cam_overlaps: []\n  camera_model: pinhole\n  distortion_model: radtan\n"
       "  distortion_coeffs: [{}, {}, {}, {}]\n  intrinsics: [{}, {}, {}, {}]\n  resolution: [{}, {}]\n"
       "  rostopic: {}\n  timeshift_cam_imu: 0.0\n",
-      kalibr_rows(facts.rig.imu.T_base_imu.inverse() * c.T_base_camera, "    "), c.k1, c.k2, c.p1, c.p2,
-      c.fx_px, c.fy_px, c.cx_px, c.cy_px, c.width_px, c.height_px, facts.names.image);
+      kalibr_rows(facts.rig.imu.T_base_imu.inverse() * c.T_base_camera, "    "), real_text(c.k1),
+      real_text(c.k2), real_text(c.p1), real_text(c.p2), real_text(c.fx_px), real_text(c.fy_px),
+      real_text(c.cx_px), real_text(c.cy_px), c.width_px, c.height_px, facts.names.image);
 }
 
 std::string estimator(const DatasetFacts& facts) {
@@ -66,7 +68,7 @@ std::string estimator(const DatasetFacts& facts) {
       "init_dyn_mle_max_threads: 6\ninit_dyn_num_pose: 6\ninit_dyn_min_deg: 10.0\ninit_dyn_inflation_ori: "
       "10\n"
       "init_dyn_inflation_vel: 100\ninit_dyn_inflation_bg: 10\ninit_dyn_inflation_ba: 100\n"
-      "init_dyn_min_rec_cond: 1e-12\ninit_dyn_bias_g: [0.0, 0.0, 0.0]\ninit_dyn_bias_a: [0.0, 0.0, 0.0]\n\n"
+      "init_dyn_min_rec_cond: 1.0e-12\ninit_dyn_bias_g: [0.0, 0.0, 0.0]\ninit_dyn_bias_a: [0.0, 0.0, 0.0]\n\n"
       "record_timing_information: false\nrecord_timing_filepath: \"/tmp/traj_timing.txt\"\nsave_total_state: "
       "false\n"
       "filepath_est: \"/tmp/ov_estimate.txt\"\nfilepath_std: \"/tmp/ov_estimate_std.txt\"\n"
@@ -80,7 +82,7 @@ std::string estimator(const DatasetFacts& facts) {
       "up_aruco_sigma_px: 1\nup_aruco_chi2_multipler: 1\n\nuse_mask: false\n\n"
       "relative_config_imu: \"kalibr_imu_chain.yaml\"\nrelative_config_imucam: "
       "\"kalibr_imucam_chain.yaml\"\n",
-      facts.rig.imu.gravity_mps2, facts.rig.camera.rate_hz + 1);
+      real_text(facts.rig.imu.gravity_mps2), real_text(facts.rig.camera.rate_hz + 1));
 }
 
 std::vector<ExtraFile> configuration(const DatasetFacts& facts) {

@@ -9,20 +9,13 @@ namespace vsslam {
 
 namespace {
 
-// It stops at a real number without a point.
-std::string real(double value) {
-  std::string text = fmt::format("{}", value);
-  if (text.find_first_of(".e") == std::string::npos) text += ".0";
-  return text;
-}
-
 std::string camera_settings(const CameraCalibration& c) {
   return fmt::format(
       "Camera.type: \"PinHole\"\nCamera1.fx: {}\nCamera1.fy: {}\nCamera1.cx: {}\nCamera1.cy: {}\n"
       "Camera1.k1: {}\nCamera1.k2: {}\nCamera1.p1: {}\nCamera1.p2: {}\n"
       "Camera.width: {}\nCamera.height: {}\nCamera.fps: {:.0f}\nCamera.RGB: 1\n\n",
-      real(c.fx_px), real(c.fy_px), real(c.cx_px), real(c.cy_px), real(c.k1), real(c.k2), real(c.p1),
-      real(c.p2), c.width_px, c.height_px, c.rate_hz);
+      real_text(c.fx_px), real_text(c.fy_px), real_text(c.cx_px), real_text(c.cy_px), real_text(c.k1),
+      real_text(c.k2), real_text(c.p1), real_text(c.p2), c.width_px, c.height_px, c.rate_hz);
 }
 
 std::string imu_settings(const DatasetFacts& facts) {
@@ -34,8 +27,9 @@ std::string imu_settings(const DatasetFacts& facts) {
       "IMU.NoiseGyro: {}  # rad/s/sqrt(Hz)\nIMU.NoiseAcc: {}  # m/s^2/sqrt(Hz)\n"
       "IMU.GyroWalk: {}  # rad/s^2/sqrt(Hz)\nIMU.AccWalk: {}  # m/s^3/sqrt(Hz)\nIMU.Frequency: {}\n\n",
       matrix_text(imu.T_base_imu.inverse() * facts.rig.camera.T_base_camera, "          "),
-      real(imu.gyro_noise_radps_rthz), real(imu.accel_noise_mps2_rthz), real(imu.gyro_bias_walk_radps2_rthz),
-      real(imu.accel_bias_walk_mps3_rthz), real(imu.rate_hz));
+      real_text(imu.gyro_noise_radps_rthz), real_text(imu.accel_noise_mps2_rthz),
+      real_text(imu.gyro_bias_walk_radps2_rthz), real_text(imu.accel_bias_walk_mps3_rthz),
+      real_text(imu.rate_hz));
 }
 
 std::vector<ExtraFile> configuration(const DatasetFacts& facts) {

@@ -38,9 +38,10 @@ std::string main_file(const DatasetFacts& facts) {
       "load_previous_pose_graph: 0\npose_graph_save_path: \"~/output/pose_graph/\"\nsave_image: 0\n",
       facts.names.imu, facts.names.image, c.width_px, c.height_px,
       matrix_text(imu.T_base_imu.inverse() * c.T_base_camera, "          "),
-      per_sample(imu.accel_noise_mps2_rthz, imu.rate_hz), per_sample(imu.gyro_noise_radps_rthz, imu.rate_hz),
-      per_sample(imu.accel_bias_walk_mps3_rthz, imu.rate_hz),
-      per_sample(imu.gyro_bias_walk_radps2_rthz, imu.rate_hz), imu.gravity_mps2);
+      real_text(per_sample(imu.accel_noise_mps2_rthz, imu.rate_hz)),
+      real_text(per_sample(imu.gyro_noise_radps_rthz, imu.rate_hz)),
+      real_text(per_sample(imu.accel_bias_walk_mps3_rthz, imu.rate_hz)),
+      real_text(per_sample(imu.gyro_bias_walk_radps2_rthz, imu.rate_hz)), real_text(imu.gravity_mps2));
 }
 
 std::string camera_file(const CameraCalibration& c) {
@@ -48,7 +49,8 @@ std::string camera_file(const CameraCalibration& c) {
       "%YAML:1.0\n---\nmodel_type: PINHOLE\ncamera_name: camera\nimage_width: {}\nimage_height: {}\n"
       "distortion_parameters:\n   k1: {}\n   k2: {}\n   p1: {}\n   p2: {}\n"
       "projection_parameters:\n   fx: {}\n   fy: {}\n   cx: {}\n   cy: {}\n",
-      c.width_px, c.height_px, c.k1, c.k2, c.p1, c.p2, c.fx_px, c.fy_px, c.cx_px, c.cy_px);
+      c.width_px, c.height_px, real_text(c.k1), real_text(c.k2), real_text(c.p1), real_text(c.p2),
+      real_text(c.fx_px), real_text(c.fy_px), real_text(c.cx_px), real_text(c.cy_px));
 }
 
 std::vector<ExtraFile> configuration(const DatasetFacts& facts) {
@@ -70,7 +72,8 @@ std::string instructions(const DatasetFacts& facts) {
 }  // namespace
 
 TargetSystem vins_fusion() {
-  return {"vins-fusion", "VINS-Fusion", DatasetFormat::bag, true, false, names(), configuration, instructions};
+  return {"vins-fusion", "VINS-Fusion", DatasetFormat::bag, true,
+          false,         names(),       configuration,      instructions};
 }
 
 }  // namespace vsslam

@@ -169,6 +169,21 @@ TEST_F(Systems, KissIcpAndEvalioNameTopicAndRanges) {
   EXPECT_THAT(python, HasSubstr("HERE / \"askew.bag\""));
 }
 
+// YAML 1.1, which ROS' Python reads, has no numbers with an exponent but without a point.
+TEST_F(Systems, SmallNumbersAreNumbersToPython) {
+  DatasetFacts small = facts("lio-sam");
+  small.rig.imu.gyro_noise_radps_rthz = 1e-5;
+  small.rig.imu.accel_bias_walk_mps3_rthz = 2e-7;
+  small.rig.lidar.T_base_lidar.translation.x() = 3e-16;
+  const std::regex pointless("(^|[^0-9.])[0-9]+e[-+]?[0-9]");
+  for (const TargetSystem& system : target_systems())
+    for (const ExtraFile& file : system.configuration(small)) {
+      if (!file.path.ends_with(".yaml")) continue;
+      EXPECT_FALSE(std::regex_search(file.content, pointless)) << file.path;
+    }
+  EXPECT_THAT(file_of("lio-sam", "lio_sam/params.yaml", small), HasSubstr("imuGyrNoise: 1.0e-05\n"));
+}
+
 TEST_F(Systems, AllAreCompleteAndHaveInstructions) {
   EXPECT_EQ(target_systems().size(), 8u);
   for (const TargetSystem& system : target_systems()) {
