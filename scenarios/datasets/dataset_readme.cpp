@@ -96,35 +96,44 @@ std::string files(const ExportPlan& plan, const DatasetCounts& counts) {
   return text + truth_description(plan.truth, plan.facts.has_camera());
 }
 
+std::string summary(const Scenario& scenario, const DatasetCounts& counts) {
+  std::string text = fmt::format("# {}\n\n", scenario.name);
+  if (!scenario.description.empty()) text += scenario.description + "\n\n";
+  return text + fmt::format(
+                    "Simulated: a Scout 2.0, {:.1f} s, seed {}. {} scans ({} points), {} images, {} IMU "
+                    "samples, {} wheel "
+                    "samples. The calibration is the simulator's own and the truth is what happened: both "
+                    "are exact.\n\n",
+                    counts.duration_s, scenario.seeds.front(), counts.scans, counts.points, counts.images,
+                    counts.imu, counts.wheels);
+}
+
+std::string conventions(const MessageNames& names) {
+  return fmt::format(
+      "`T_a_b` maps coordinates in b to coordinates in a. `{}`: middle of the chassis, x forward, y left, z "
+      "up. "
+      "`{}` (LiDAR), `{}` (IMU): the same axes when mounted level. `{}`: x right, y down, z forward. m, rad, "
+      "s. "
+      "Time 0 of the simulation is {} s since 1970.\n",
+      names.base_frame, names.lidar_frame, names.imu_frame, names.camera_frame,
+      kDatasetEpoch.ns / 1'000'000'000);
+}
+
 }  // namespace
 
 std::string dataset_readme(const ExportPlan& plan, const DatasetCounts& counts) {
-  const Scenario& scenario = plan.facts.scenario;
-  std::string text = fmt::format(
-      "# {}\n\n{}{}Simulated: a Scout 2.0, {:.1f} s, seed {}. {} scans, {} images, {} IMU samples, {} wheel "
-      "samples. "
-      "Every number here is exact by construction: the calibration is the simulator's own, the truth is what "
-      "happened.\n\n",
-      scenario.name, scenario.description, scenario.description.empty() ? "" : ".\n\n", counts.duration_s,
-      scenario.seeds.front(), counts.scans, counts.images, counts.imu, counts.wheels);
+  const bool messages = plan.has(DatasetFormat::bag) || plan.has(DatasetFormat::mcap);
+  std::string text = summary(plan.facts.scenario, counts);
   text += "## Files\n\n" + files(plan, counts);
-  if (plan.has(DatasetFormat::bag) || plan.has(DatasetFormat::mcap))
-    text += "\n## Topics\n\n" + topics(plan, counts);
-  text += fmt::format(
-      "\n## Frames, units, time\n\n"
-      "`T_a_b` maps coordinates in b to coordinates in a. `base`: middle of the chassis, x forward, y left, "
-      "z up. "
-      "`lidar`, `imu`: the same axes when mounted level. `camera`: x right, y down, z forward. m, rad, s. "
-      "Time 0 of the "
-      "simulation is {} s since 1970.\n",
-      kDatasetEpoch.ns / 1'000'000'000);
+  if (messages) text += "\n## Topics\n\n" + topics(plan, counts);
+  text += "\n## Frames, units, time\n\n" + conventions(plan.facts.names);
   if (plan.system != nullptr)
     text += fmt::format("\n## {}\n\n{}", plan.system->title, plan.system->instructions(plan.facts));
-  text +=
-      "\n## VS-SLAM Testbed\n\n    ./vsslam replay .             # the testbed's own stack on this dataset\n"
-      "    ./vsslam run scenario.yaml    # the same in the simulator\n"
-      "    ./vsslam evaluate estimate.tum truth.tum\n";
-  return text;
+  text += "\n## VS-SLAM Testbed\n\n";
+  if (messages) text += "    ./vsslam replay .             # the testbed's own stack on this dataset\n";
+  return text +
+         "    ./vsslam run scenario.yaml    # the same in the simulator\n"
+         "    ./vsslam evaluate estimate.tum truth.tum\n";
 }
 
 }  // namespace vsslam
