@@ -44,6 +44,7 @@ class BagWriter : public MessageWriter {
 
   void finish() override {
     bag_->close();
+    check_index();
     std::error_code error;
     fs::rename(part_, path_, error);
     if (error) throw ResourceError(fmt::format("{}: cannot rename: {}", path_.string(), error.message()));
@@ -51,6 +52,15 @@ class BagWriter : public MessageWriter {
   }
 
  private:
+  /// Nobody else says that the last bytes did not reach the disk.
+  void check_index() const {
+    try {
+      read_messages(part_);
+    } catch (const InputError& error) {
+      throw ResourceError(fmt::format("{}: not written to its end: {}", path_.string(), error.what()));
+    }
+  }
+
   fs::path path_, part_;
   std::unique_ptr<RosbagOutput> bag_;  // none: finished
   std::string bytes_;

@@ -105,18 +105,29 @@ struct RosbagOutput::State {
 
 RosbagOutput::RosbagOutput(const std::string& path) : state_(std::make_unique<State>()) {
   state_->path = path;
-  state_->guarded([&] {
-    state_->bag.open(path, rosbag::bagmode::Write);
-    state_->bag.setCompression(rosbag::compression::LZ4);
-  });
+  try {
+    state_->guarded([&] {
+      state_->bag.open(path, rosbag::bagmode::Write);
+      state_->bag.setCompression(rosbag::compression::LZ4);
+    });
+  } catch (const ResourceError&) {
+    give_up();
+    throw;
+  }
 }
 
 RosbagOutput::~RosbagOutput() {
+  give_up();
+}
+
+/// A bag's destructor closes it, which writes; if that throws, as on a full disk, the program ends. Such a bag is kept
+/// instead, out of reach of destructors.
+void RosbagOutput::give_up() {
+  static auto& unclosable = *new std::vector<std::unique_ptr<State>>;
   try {
     state_->bag.close();
   } catch (...) {
-    // Given up: nobody will see the file. The bag's own destructor would throw once more, which ends the program.
-    (void)state_.release();
+    unclosable.push_back(std::move(state_));
   }
 }
 
@@ -139,12 +150,6 @@ void RosbagOutput::write(const std::string& topic, const std::string& type, int6
 
 void RosbagOutput::close() {
   state_->guarded([&] { state_->bag.close(); });
-  // The library does not look at what closing the file says.
-  try {
-    rosbag::Bag written(state_->path, rosbag::bagmode::Read);
-  } catch (const rosbag::BagException& error) {
-    throw ResourceError(std::string(state_->path).append(": not written to its end: ").append(error.what()));
-  }
 }
 
 }  // namespace vsslam

@@ -1,6 +1,9 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <csignal>
 
 #include "core/errors.h"
 #include "core/files.h"
@@ -227,6 +230,43 @@ TEST_P(MessageFiles, SaveWhatAKilledRecorderLeft) {
   expect_prefix(part, everything_in(messages), 0);
   EXPECT_GT(part.size(), messages.size() / 2);
   EXPECT_NE(reader->damage(), "");
+}
+
+/// While it lives, files end at `bytes`, as on a full disk.
+class FileLimit {
+ public:
+  explicit FileLimit(rlim_t bytes) {
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit{bytes, before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FileLimit() {
+    setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, signal_);
+  }
+
+ private:
+  rlimit before_{};
+  void (*signal_)(int) = std::signal(SIGXFSZ, SIG_IGN);
+};
+
+// Where it fills may be the header, a chunk or the index; the file's content does not compress.
+TEST_P(MessageFiles, OnAFullDiskAreAResourceErrorAndLeaveNothing) {
+  const std::vector<Message> messages = drive(3);
+  const size_t whole = fs::file_size(written(messages));
+  const fs::path folder = scratch_folder() / ("full_disk_" + GetParam().name);
+  for (const size_t bytes : {size_t{10}, size_t{3000}, whole / 2, whole - 3000, whole - 1}) {
+    const FileLimit limit(bytes);
+    const auto write_all = [&] {
+      const auto writer = GetParam().open(folder / "file");
+      for (const Message& message : messages) writer->write(message);
+      writer->finish();
+    };
+    EXPECT_THROW(write_all(), ResourceError) << bytes;
+  }
+  std::vector<fs::path> left;
+  for (const auto& entry : fs::directory_iterator(folder)) left.push_back(entry.path());
+  EXPECT_THAT(left, testing::IsEmpty());
 }
 
 TEST_P(MessageFiles, RememberWhatIsLatched) {
