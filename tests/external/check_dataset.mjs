@@ -135,7 +135,7 @@ for (const scan of [0, clouds.length - 1]) {
     const points = data.trim().split("\n").map((line) => line.split(" ").map(Number));
     assert.equal(points.length, clouds[scan].points.length, text);
     points.forEach((point, i) =>
-      point.forEach((value, k) => near(value, clouds[scan].points[i][k], 1e-6 * Math.max(1, Math.abs(value)), `${text}: point ${i}`)),
+      point.forEach((value, k) => assert.equal(Math.fround(value), clouds[scan].points[i][k], `${text}: point ${i}`)),
     );
   }
 }
