@@ -125,16 +125,29 @@ ReplayedRecording::ReplayedRecording(const ReplayRequest& request,
                            .undistorted = request.undistorted};
   if (!request.truth.empty() && fs::exists(request.truth)) {
     truth_world_base_ = read_trajectory(request.truth);
-    truth_name_ = request.truth;
+    truth_name_ = fs::path(request.truth).filename().string();
     options.topics["truth"] = "none";
   } else if (!request.truth.empty()) {
     options.topics["truth"] = truth_name_ = request.truth;
   }
   recording_ = open_recording(path_, sheet_, options);
+  if (request.truth.empty()) find_truth_beside();
   samples_ = std::make_unique<SampleOrder>(*recording_);
   choose_prior(sets_prior(request.overrides));
   setup_ = {config_.slam, sheet_.calibration, config_.map_voxel_m};
   tell_notes();
+}
+
+// Of a dataset whose format has no topic for it.
+void ReplayedRecording::find_truth_beside() {
+  const fs::path file = path_ / "truth.tum";
+  const std::vector<RecordedStream>& streams = recording_->facts().streams;
+  if (!fs::is_directory(path_) || !fs::exists(file) ||
+      std::any_of(streams.begin(), streams.end(),
+                  [](const RecordedStream& s) { return s.used_as == "truth"; }))
+    return;
+  truth_world_base_ = read_trajectory(file);
+  truth_name_ = file.filename().string();
 }
 
 void ReplayedRecording::choose_prior(bool asked_for) {
@@ -177,6 +190,7 @@ void ReplayedRecording::read_chunk(Chunk& chunk) {
   constexpr size_t kLidar = 2;
   if (ended_ && samples_->counts(kLidar).used == 0)
     throw InputError(fmt::format("{}: not one scan of the LiDAR could be used", path_.string()));
+  if (ended_) take_truth();
 }
 
 void ReplayedRecording::note_gaps() {
@@ -200,6 +214,10 @@ void ReplayedRecording::tell_notes() {
 
 void ReplayedRecording::judge(const OdometryRun& odometry) {
   camera_png_ = odometry.pictures().png();
+}
+
+// The truth on the samples' clock, while the samples last.
+void ReplayedRecording::take_truth() {
   if (truth_world_base_.empty()) {
     truth_world_base_ = recording_->truth_world_base();
     for (const RecordedStream& stream : recording_->facts().streams)
@@ -211,7 +229,7 @@ void ReplayedRecording::judge(const OdometryRun& odometry) {
   };
   std::erase_if(truth_world_base_, outside);
   if (truth_world_base_.empty() && !truth_name_.empty())
-    add_note(fmt::format("truth: {} has no pose during the recording: nothing to score with", truth_name_));
+    add_note(fmt::format("truth: {} has no pose during the recording: nothing is scored", truth_name_));
 }
 
 RunRecord ReplayedRecording::record(const MappingRun& estimation) const {
@@ -254,19 +272,22 @@ std::string ReplayedRecording::recording_json() const {
                        {"used_as", s.used_as.empty() ? Json(nullptr) : Json(s.used_as)}});
   for (size_t sensor = 0; sensor < kSensors; ++sensor) {
     const SampleCounts& c = samples_->counts(sensor);
-    samples[kSensorNames[sensor]] = {
-        {"used", c.used},           {"dropped_late", c.late}, {"dropped_duplicate", c.duplicates},
-        {"dropped_empty", c.empty}, {"gaps", c.gaps},         {"longest_gap_s", c.longest_gap_s}};
+    samples[kSensorNames[sensor]] = {{"used", c.used},
+                                     {"dropped_late", c.late},
+                                     {"dropped_duplicate", c.duplicates},
+                                     {"dropped_stray", c.stray},
+                                     {"dropped_empty", c.empty},
+                                     {"gaps", c.gaps},
+                                     {"longest_gap_s", c.longest_gap_s}};
   }
-  const Json json = {
-      {"file", path_.filename().string()},
-      {"format", facts.format},
-      {"epoch_s", samples_->epoch().ns / 1'000'000'000},
-      {"prior", name_of(config_.slam.prior)},
-      {"truth", truth_name_.empty() ? Json(nullptr) : Json(fs::path(truth_name_).filename().string())},
-      {"streams", streams},
-      {"samples", samples},
-      {"notes", notes_}};
+  const Json json = {{"file", path_.filename().string()},
+                     {"format", facts.format},
+                     {"epoch_s", samples_->epoch().ns / 1'000'000'000},
+                     {"prior", name_of(config_.slam.prior)},
+                     {"truth", truth_name_.empty() ? Json(nullptr) : Json(truth_name_)},
+                     {"streams", streams},
+                     {"samples", samples},
+                     {"notes", notes_}};
   return json.dump(2) + "\n";
 }
 

@@ -27,7 +27,8 @@ struct ReplayRequest {
   std::filesystem::path recording;
   std::string rig{};                  ///< a sheet's name or path; empty: rig.yaml beside the recording
   std::vector<Override> overrides{};  ///< of ReplayConfig; without slam.prior the sensors decide
-  std::string truth{};                ///< a trajectory file or a topic; empty: the sheet's topic, if recorded
+  std::string
+      truth{};  ///< a trajectory file or a topic; empty: the sheet's topic, or truth.tum in the folder
   std::map<std::string, std::string> topics{};  ///< see RecordingOptions
   bool salvage = false, undistorted = false;
   std::string name{};  ///< of the result; empty: the recording's file name
@@ -55,8 +56,10 @@ class ReplayedRecording final : public MeasurementSource {
   void add_times(WallClock& clock) const override { clock.add(clock_); }
 
  private:
+  void find_truth_beside();
   void choose_prior(bool asked_for);
   void read_chunk(Chunk& chunk);
+  void take_truth();
   void add_note(const std::string& text);
   void tell_notes();
   void note_gaps();
@@ -74,7 +77,8 @@ class ReplayedRecording final : public MeasurementSource {
   bool reading_ = false, ended_ = false;
   std::optional<Time> first_end_;
   Time last_end_{0};
-  std::vector<StampedPose> truth_world_base_;  // from a file: stamps as recorded; judged: as the samples'
+  std::vector<StampedPose>
+      truth_world_base_;  // from a file: as recorded; after the last sample: on their clock
   std::string truth_name_, camera_png_;
   std::vector<std::string> notes_;
   size_t told_ = 0;

@@ -58,18 +58,33 @@ MessageRecording::MessageRecording(std::unique_ptr<MessageReader> reader, std::s
 }
 
 std::optional<RecordedSample> MessageRecording::next() {
-  while (const std::optional<Message> message = reader_->next()) {
+  while (std::optional<Message> message = reader_->next()) {
     const std::string role = role_of(topics_, message->topic);
     if (role.empty()) continue;
     const std::string place =
         fmt::format("{}: {} message {}", file_, message->topic, read_[message->topic]++);
     if (role == "truth") {
       add_truth(*message);
-    } else if (auto sample = sample_of(*message, place)) {
+    } else if (auto sample = sample_of(stamped(std::move(*message)), place)) {
       return sample;
     }
   }
   return std::nullopt;
+}
+
+// Some drivers leave the stamp empty.
+Message MessageRecording::stamped(Message message) {
+  const auto stamp = [&](auto& content) {
+    if constexpr (requires { content.header; }) {
+      if (content.header.stamp.ns != 0) return;
+      content.header.stamp = message.recorded;
+      const std::string note =
+          fmt::format("{}: empty stamps: when it was recorded stands for them", message.topic);
+      if (std::find(notes_.begin(), notes_.end(), note) == notes_.end()) notes_.push_back(note);
+    }
+  };
+  std::visit(stamp, message.content);
+  return message;
 }
 
 std::optional<RecordedSample> MessageRecording::sample_of(const Message& message, const std::string& place) {

@@ -30,6 +30,7 @@ class MessageRecording final : public Recording {
 
  private:
   std::optional<RecordedSample> sample_of(const Message& message, const std::string& place);
+  Message stamped(Message message);
   void add_truth(const Message& message);
   void weigh(const ImuSample& sample);
 

@@ -35,21 +35,34 @@ void SampleOrder::Intervals::add(int64_t ns) {
 
 // One more than the window: what is older than its newest cannot be overtaken any more.
 void SampleOrder::fill() {
+  constexpr Duration kLeap{10'000'000'000};
   while (!ended_ && (waiting_.empty() || *newest_ - std::get<Time>(waiting_.begin()->first) < window_)) {
     std::optional<RecordedSample> sample = recording_.next();
     if (!sample) {
       ended_ = true;
+      if (ahead_) ++counts_[ahead_->sample.index()].stray;
       return;
     }
-    const size_t sensor = sample->sample.index();
-    if (released_ && sample->end < *released_) {
-      ++counts_[sensor].late;
+    const bool leaps = newest_ && sample->end - *newest_ > kLeap;
+    if (leaps && !ahead_) {
+      ahead_ = std::move(sample);
       continue;
     }
-    newest_ = newest_ ? std::max(*newest_, sample->end) : sample->end;
-    const Key key{sample->end, sensor, arrived_++};
-    waiting_.emplace(key, std::move(*sample));
+    if (ahead_ && leaps) take(*std::exchange(ahead_, std::nullopt));
+    if (ahead_) ++counts_[std::exchange(ahead_, std::nullopt)->sample.index()].stray;
+    take(std::move(*sample));
   }
+}
+
+void SampleOrder::take(RecordedSample sample) {
+  const size_t sensor = sample.sample.index();
+  if (released_ && sample.end < *released_) {
+    ++counts_[sensor].late;
+    return;
+  }
+  newest_ = newest_ ? std::max(*newest_, sample.end) : sample.end;
+  const Key key{sample.end, sensor, arrived_++};
+  waiting_.emplace(key, std::move(sample));
 }
 
 std::optional<RecordedSample> SampleOrder::next() {

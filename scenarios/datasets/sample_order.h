@@ -18,6 +18,7 @@ struct SampleCounts {
   int64_t used = 0;
   int64_t late = 0;        ///< dropped: a later one had gone its way
   int64_t duplicates = 0;  ///< dropped: the same stamp again, or an earlier one
+  int64_t stray = 0;       ///< dropped: a stamp that ran ahead of the others, and the next one did not follow
   int64_t empty = 0;       ///< dropped: scans without points
   int64_t gaps = 0;        ///< intervals of more than three usual ones
   double longest_gap_s = 0;
@@ -48,6 +49,7 @@ class SampleOrder {
   using Key = std::tuple<Time, size_t, int64_t>;  // end, sensor, number of arrival
 
   void fill();
+  void take(RecordedSample sample);
   bool accept(const RecordedSample& sample);
   void watch(size_t sensor, Time stamp);
   RecordedSample counted_from_epoch(RecordedSample sample) const;
@@ -56,6 +58,8 @@ class SampleOrder {
   Duration window_;
   std::map<Key, RecordedSample> waiting_;
   std::optional<Time> newest_, released_;
+  std::optional<RecordedSample>
+      ahead_;  // far ahead of the newest; the next sample tells whether that is true
   std::optional<Duration> epoch_;
   int64_t arrived_ = 0;
   bool ended_ = false;

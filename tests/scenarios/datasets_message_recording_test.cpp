@@ -131,6 +131,14 @@ TEST(MessageRecording, GathersTheTruth) {
   EXPECT_EQ(read.truth_world_base()[0].pose.translation.z(), 3);
 }
 
+TEST(MessageRecording, EmptyStampsAreThoseOfTheRecording) {
+  ImuMessage message = imu(3);
+  message.header.stamp = Time{0};
+  MessageRecording read = recording({{"/imu", at(4), message}});
+  EXPECT_EQ(stamp_of(read.next()->sample), at(4));
+  EXPECT_THAT(read.notes(), Contains(HasSubstr("/imu: empty stamps")));
+}
+
 TEST(MessageRecording, ErrorsNameTheTopicAndTheMessage) {
   ImageMessage image;
   image.encoding = "mono8";

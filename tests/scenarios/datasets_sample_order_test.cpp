@@ -81,6 +81,17 @@ TEST(SampleOrder, HoldsNoMoreThanTheWindow) {
   EXPECT_EQ(order.counts(0).used, 1000);
 }
 
+TEST(SampleOrder, AStampThatRunsAheadAloneIsDropped) {
+  GivenSamples given;
+  given.imu(0), given.imu(10), given.wheels(4'000'000), given.imu(20), given.imu(2030);
+  given.imu(60'000), given.imu(60'010), given.wheels(60'010), given.scan(100'000, 100'100);
+  SampleOrder order(given);
+  EXPECT_THAT(order_of(order), ElementsAre("i0", "i10", "i20", "i2030", "i60000", "i60010", "w60010"));
+  EXPECT_EQ(order.counts(1).stray, 1);
+  EXPECT_EQ(order.counts(2).stray, 1);  // the last of all
+  EXPECT_EQ(order.counts(0).late, 0);
+}
+
 TEST(SampleOrder, CountsGapsWithTheirPlace) {
   GivenSamples given;
   for (int i = 0; i < 20; ++i) given.scan(100 * i, 100 * i + 99);

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <functional>
 #include <nlohmann/json.hpp>
 
@@ -13,6 +14,7 @@
 #include "scenarios/datasets/sample_messages.h"
 #include "scenarios/driving.h"
 #include "scenarios/evaluation/trajectory_file.h"
+#include "scenarios/library_files.h"
 #include "scenarios/scenario_world.h"
 #include "scenarios/sensing.h"
 #include "tests/scenarios/command_line.h"
@@ -83,7 +85,7 @@ fs::path dataset(const std::string& name, bool bag = true, const std::function<b
     if (!keep || keep(message)) writer->write(message);
   writer->finish();
   write_file(folder / "rig.yaml", save_config(recorded_drive().sheet));
-  write_tum(folder / "truth.tum", recorded_drive().truth_world_base);
+  write_tum(folder / "truth.txt", recorded_drive().truth_world_base);
   return folder;
 }
 
@@ -179,7 +181,7 @@ TEST(Replay, WithoutTruthNothingIsScored) {
 
 TEST(Replay, WithTruthTheScoreIsThatOfEvaluate) {
   const fs::path folder = dataset("scored");
-  const std::string truth = (folder / "truth.tum").string();
+  const std::string truth = (folder / "truth.txt").string();
   ASSERT_EQ(replay(folder, {"--truth", truth}).code, 0);
   const nlohmann::json metrics = json_of(result("scored") / "metrics.json");
   const Outcome evaluated = call({"evaluate", (result("scored") / "estimate.tum").string(), truth, "--json"});
@@ -189,6 +191,44 @@ TEST(Replay, WithTruthTheScoreIsThatOfEvaluate) {
   EXPECT_TRUE(metrics["loops"].contains("precision"));
   EXPECT_FALSE(metrics["loops"].contains("recall"));
   EXPECT_THAT(read_file(result("scored") / "report.html"), Not(HasSubstr("id=\"error\" hidden")));
+}
+
+TEST(Replay, TakesTheTruthOfADatasetAndSaysWhereNoneFits) {
+  const fs::path folder = dataset("truths");
+  std::vector<StampedPose> truth = recorded_drive().truth_world_base;
+  write_tum(folder / "truth.tum", truth);
+  ASSERT_EQ(replay(folder).code, 0);
+  EXPECT_EQ(json_of(result("truths") / "recording.json")["truth"], "truth.tum");
+  EXPECT_TRUE(json_of(result("truths") / "metrics.json").contains("ate_rmse_m"));
+  for (StampedPose& pose : truth) pose.stamp = pose.stamp - kEpoch;
+  write_tum(folder / "truth.tum", truth);
+  const Outcome outcome = replay(folder);
+  ASSERT_EQ(outcome.code, 0);
+  EXPECT_THAT(outcome.err, HasSubstr("truth.tum has no pose during the recording"));
+  EXPECT_FALSE(json_of(result("truths") / "metrics.json").contains("ate_rmse_m"));
+}
+
+TEST(Replay, EverySheetOfTheLibraryLoads) {
+  for (const std::string& name : library_names("sheets")) {
+    RigSheet sheet;
+    EXPECT_NO_THROW(load_config(library_file("sheets", name), sheet, library())) << name;
+  }
+  RigSheet m2dgr;
+  load_config(library_file("sheets", "m2dgr"), m2dgr, library());
+  // Its camera looks ahead: z of the camera is x of the base, x of the camera is -y.
+  const SE3& T_base_camera = m2dgr.calibration.camera.T_base_camera;
+  EXPECT_LT((T_base_camera.rotation * Vec3::UnitZ() - Vec3::UnitX()).norm(), 1e-12);
+  EXPECT_LT((T_base_camera.rotation * Vec3::UnitX() + Vec3::UnitY()).norm(), 1e-12);
+}
+
+TEST(Replay, ARealLidarAtRestStaysWhereItIs) {
+  const char* path = std::getenv("VSSLAM_VLP16_PACKETS");
+  if (!path || !fs::exists(path)) GTEST_SKIP() << "set VSSLAM_VLP16_PACKETS to a file of raw packets";
+  ASSERT_EQ(replay(path, {"--rig", "vlp16_only", "--name", "real"}).code, 0);
+  for (const StampedPose& pose : read_tum(result("real") / "estimate.tum")) {
+    EXPECT_LT(pose.pose.translation.norm(), 0.01);
+    EXPECT_LT(pose.pose.angle(), 0.01);
+  }
 }
 
 TEST(Replay, ChoosesThePriorByWhatIsThere) {
