@@ -16,6 +16,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
+// Of chunks that overlap in time there are a few, of about 1 MB.
+constexpr size_t kChunkMemoryBytes = size_t{64} << 20;
+
 std::unique_ptr<Recording> open_messages(const fs::path& path, const RigSheet& sheet,
                                          const RecordingOptions& options,
                                          const CloudDecoder::Options& clouds) {
@@ -29,6 +32,7 @@ std::unique_ptr<Recording> open_messages(const fs::path& path, const RigSheet& s
   if (!options.images) asked.emplace("camera", "none");
   const TopicChoice choice = choose_topics(topics, sheet.topics, asked, file, notes);
   ReadOptions read{.topics = {}, .salvage = options.salvage};
+  read.chunk_memory_bytes = kChunkMemoryBytes;
   for (const auto& [sensor, topic] : choice) read.topics.push_back(topic);
   return std::make_unique<MessageRecording>(read_messages(path, read), file, choice, sheet.calibration,
                                             clouds, notes, topics);
