@@ -131,7 +131,7 @@ ReplayedRecording::ReplayedRecording(const ReplayRequest& request,
     options.topics["truth"] = truth_name_ = request.truth;
   }
   recording_ = open_recording(path_, sheet_, options);
-  if (request.truth.empty()) find_truth_beside();
+  if (request.truth.empty() && !request.topics.contains("truth")) find_truth_beside();
   samples_ = std::make_unique<SampleOrder>(*recording_);
   choose_prior(sets_prior(request.overrides));
   setup_ = {config_.slam, sheet_.calibration, config_.map_voxel_m};

@@ -200,6 +200,8 @@ TEST(Replay, TakesTheTruthOfADatasetAndSaysWhereNoneFits) {
   ASSERT_EQ(replay(folder).code, 0);
   EXPECT_EQ(json_of(result("truths") / "recording.json")["truth"], "truth.tum");
   EXPECT_TRUE(json_of(result("truths") / "metrics.json").contains("ate_rmse_m"));
+  ASSERT_EQ(replay(folder, {"--topic", "truth=none", "--name", "unjudged"}).code, 0);
+  EXPECT_FALSE(fs::exists(result("unjudged") / "truth.tum"));
   for (StampedPose& pose : truth) pose.stamp = pose.stamp - kEpoch;
   write_tum(folder / "truth.tum", truth);
   const Outcome outcome = replay(folder);
