@@ -17,6 +17,8 @@ namespace {
 
 using Field = PointCloudMessage::Field;
 
+constexpr double kLongestScan_s = 10;
+
 size_t bytes_of(uint8_t datatype) {
   switch (datatype) {
     case Field::i8:
@@ -141,7 +143,7 @@ LidarScan CloudDecoder::decode(const PointCloudMessage& cloud, std::string_view 
     note("no field of times: derived from the points' azimuth");
     derive_times(scan);
   } else {
-    set_times(scan, times, layout.time->datatype == Field::f32);
+    set_times(scan, times, layout.time->datatype == Field::f32, place);
   }
   sort_by_time(scan);
   if (!scan.points.empty())
@@ -170,7 +172,11 @@ void CloudDecoder::read_points(const PointCloudMessage& cloud, const Layout& lay
                           scan.points.size(), ring, options_.rings));
         p.ring = static_cast<uint16_t>(ring);
       }
-      if (layout.time != nullptr) times.push_back(number(layout.time));
+      if (layout.time != nullptr) {
+        const double time = number(layout.time);
+        if (!std::isfinite(time)) continue;
+        times.push_back(time);
+      }
       scan.points.push_back(p);
     }
   }
@@ -183,11 +189,12 @@ double CloudDecoder::unit_s(double span) const {
   return 0;
 }
 
-void CloudDecoder::set_times(LidarScan& scan, std::vector<double>& times, bool seconds_as_float) {
+void CloudDecoder::set_times(LidarScan& scan, std::vector<double>& times, bool seconds_as_float,
+                             std::string_view place) {
   if (times.empty()) return;
   const auto [low, high] = std::minmax_element(times.begin(), times.end());
   const double first = *low, span = *high - *low;
-  if (!std::isfinite(first) || !std::isfinite(span) || (span == 0 && !unit_s_)) {
+  if (span == 0 && !unit_s_) {
     note("the field of times says nothing: derived from the points' azimuth");
     return derive_times(scan);
   }
@@ -198,6 +205,8 @@ void CloudDecoder::set_times(LidarScan& scan, std::vector<double>& times, bool s
                        unit == 0 ? "seconds" : fmt::format("{} s", unit)));
     unit_s_ = unit == 0 ? 1 : unit;
   }
+  if (!(span * *unit_s_ <= kLongestScan_s))
+    throw InputError(fmt::format("{}: the points' times span {} s", place, span * *unit_s_));
   // Counted from the stamp, or from 1970, or from anywhere: then the stamp is the first point's.
   const double stamp_s = scan.stamp.seconds(), first_s = first * *unit_s_;
   double zero = 0;

@@ -25,7 +25,7 @@ class CloudDecoder {
   };
   explicit CloudDecoder(const Options& options) : options_(options), rings_(options.rings) {}
 
-  /// Points that are not finite, or at the origin, are dropped; the rest is in order of time. scan.end is the last
+  /// Points that are not finite, in place or time, or at the origin, are dropped; the rest is in order of time. scan.end is the last
   /// point's time. Throws InputError that starts with `place`.
   LidarScan decode(const PointCloudMessage& cloud, std::string_view place);
   /// Fields that are missing and what stands for them.
@@ -36,7 +36,7 @@ class CloudDecoder {
   Layout layout_of(const PointCloudMessage& cloud, std::string_view place) const;
   void read_points(const PointCloudMessage& cloud, const Layout& layout, std::string_view place,
                    LidarScan& scan, std::vector<double>& times);
-  void set_times(LidarScan& scan, std::vector<double>& times, bool seconds_as_float);
+  void set_times(LidarScan& scan, std::vector<double>& times, bool seconds_as_float, std::string_view place);
   void derive_times(LidarScan& scan);
   double unit_s(double span) const;
   void note(const std::string& text);

@@ -134,7 +134,7 @@ TEST(CloudDecoder, SortsByTimeAndDropsWhatIsNoPoint) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   CloudText text(xyz_and({{"intensity", Field::u8}, {"ring", Field::u16}, {"time", Field::f32}}));
   text.point({5, 0, 0, 200, 3, 0.05}).point({nan, 0, 0, 1, 0, 0}).point({0, 0, 0, 1, 0, 0});
-  text.point({6, 0, 0, 7, 2, 0.01});
+  text.point({6, 0, 0, 7, 2, 0.01}).point({6, 0, 0, 7, 2, nan});
   const LidarScan scan = decoded(text.cloud);
   EXPECT_THAT(times(scan), ElementsAre(0.01f, 0.05f));
   EXPECT_EQ(scan.points[1].intensity, 200);
@@ -229,6 +229,7 @@ TEST(CloudDecoder, MalformedCloudsAreErrorsWithAPlace) {
   bad.is_bigendian = true;
   fails(bad, "big-endian");
   fails(CloudText(xyz_and({{"ring", Field::u8}})).point({1, 2, 3, 16}).cloud, "ring 16");
+  fails(CloudText(xyz_and({{"time", Field::f64}})).point({1, 2, 3, 0}).point({1, 2, 3, 1e30}).cloud, "span");
 }
 
 }  // namespace
