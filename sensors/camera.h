@@ -6,6 +6,8 @@
 #pragma once
 
 #include <functional>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "sensors/camera_config.h"
@@ -42,6 +44,9 @@ class Camera {
   /// dropout are left out.
   std::vector<CameraMeasurement> take(int count, const Trajectory& trajectory, const SE3& T_base_camera,
                                       const ViewSource& source);
+
+  /// Mean grey by true stamp of images that were taken in an earlier run: they come without pixels and truth.
+  void leave_out(std::function<std::optional<double>(Time)> taken) { taken_before_ = std::move(taken); }
 
   const CameraOptics& optics() const { return optics_; }
   const ViewRays& rays() const { return centre_rays_; }
@@ -82,6 +87,7 @@ class Camera {
   std::vector<ViewRays> sample_rays_;  ///< spread over the pixels' areas; empty: one through each centre
   ImageSensor sensor_;
   ExposureControl control_;
+  std::function<std::optional<double>(Time)> taken_before_;
   Time first_{0};
   int64_t next_ = 0;
   std::vector<Workshop> workshops_;

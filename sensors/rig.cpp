@@ -41,9 +41,10 @@ struct Rig::Impl {
   std::optional<RigCamera> camera;
   ClockErrors clocks;
   RandomStream spikes;
+  TakenBefore taken;
 
   bool started = false;
-  int64_t next_imu = 0, next_wheels = 0;
+  int64_t next_imu = 0, next_wheels = 0, delivered_scans = 0;
   Revolution next_revolution;
   std::vector<ObjectState> placed;  ///< of moving.objects(), as the raycaster has them
 
@@ -69,6 +70,15 @@ Rig::~Rig() = default;
 
 Raycaster& Rig::raycaster() {
   return impl_->raycaster;
+}
+
+void Rig::leave_out(TakenBefore taken) {
+  impl_->taken = std::move(taken);
+  if (!impl_->camera || !impl_->taken.image) return;
+  impl_->camera->leave_out([this](Time true_stamp) {
+    return impl_->taken.image(impl_->clocks.stamp(SensorKind::camera, true_stamp,
+                                                  1 / impl_->config.sensors.camera.rate_hz));
+  });
 }
 
 Time Rig::needed_from() const {
@@ -127,10 +137,17 @@ std::optional<LidarMeasurement> Rig::Impl::measure_lidar(const Trajectory& traje
   const Time begin = lidar.begin(revolution), end = lidar.end(revolution);
   for (const SensorDropout& dropout : events.lidar_dropouts)
     if (dropout.contains(begin) && dropout.contains(end)) return std::nullopt;
-  place_objects(begin);
-  LidarMeasurement m = lidar.scan(revolution, trajectory, T_base_lidar);
-  m.scan.stamp = clocks.stamp(SensorKind::lidar, begin, 1 / config.sensors.lidar.rate_hz);
-  m.scan.end = m.scan.stamp + (end - begin);
+  const Time stamp = clocks.stamp(SensorKind::lidar, begin, 1 / config.sensors.lidar.rate_hz);
+  LidarMeasurement m;
+  if (const int64_t index = delivered_scans++; taken.scan && taken.scan(index, stamp)) {
+    m.true_stamp = begin;
+    m.T_world_lidar = trajectory.pose(begin) * T_base_lidar;
+  } else {
+    place_objects(begin);
+    m = lidar.scan(revolution, trajectory, T_base_lidar);
+  }
+  m.scan.stamp = stamp;
+  m.scan.end = stamp + (end - begin);
   return m;
 }
 

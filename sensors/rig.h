@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 
 #include "core/calibration.h"
 #include "core/config.h"
@@ -49,6 +50,14 @@ struct RigConfig {
   RigCalibration calibration(double wheel_radius_m, double effective_track_m, double base_height_m) const;
 };
 
+/// What an earlier run has delivered already. Such scans come without points and such images without pixels instead of
+/// being rendered; all else, and what follows, is as if they had been.
+struct TakenBefore {
+  std::function<bool(int64_t index, Time stamp)> scan{};  ///< index: among the scans delivered so far; empty: none
+  /// Mean grey of the image, on which later exposures depend. Called from several threads at once; empty: none.
+  std::function<std::optional<double>(Time stamp)> image{};
+};
+
 /// Samples all sensors from the truth trajectory.
 class Rig {
  public:
@@ -67,6 +76,8 @@ class Rig {
   /// Earliest time of the truth that is still needed.
   Time needed_from() const;
   Raycaster& raycaster();
+  /// Before the first advance. Stamps are those that the sensors' clocks give.
+  void leave_out(TakenBefore taken);
 
  private:
   struct Impl;

@@ -4,6 +4,7 @@
 
 #include <deque>
 #include <optional>
+#include <utility>
 
 #include "sensors/camera.h"
 #include "sensors/light_switches.h"
@@ -20,6 +21,7 @@ class RigCamera {
             const SensorEvents& events, uint64_t seed);
 
   void power_on(Time first) { camera_.power_on(first); }
+  void leave_out(std::function<std::optional<double>(Time)> taken) { camera_.leave_out(std::move(taken)); }
   /// End of exposure of the next image (or of one that a dropout swallows).
   Time next_end() const { return waiting_.empty() ? camera_.end() : waiting_.front().end; }
   Time needed_from() const { return camera_.needed_from(); }

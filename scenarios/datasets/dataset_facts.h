@@ -23,7 +23,6 @@ struct DatasetFacts {
 /// What went into a dataset.
 struct DatasetCounts {
   int64_t scans = 0, images = 0, imu = 0, wheels = 0;
-  int64_t points = 0;  ///< of scans that were made in this run
   double duration_s = 0;
 };
 

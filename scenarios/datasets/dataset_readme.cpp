@@ -100,12 +100,12 @@ std::string summary(const Scenario& scenario, const DatasetCounts& counts) {
   std::string text = fmt::format("# {}\n\n", scenario.name);
   if (!scenario.description.empty()) text += scenario.description + "\n\n";
   return text + fmt::format(
-                    "Simulated: a Scout 2.0, {:.1f} s, seed {}. {} scans ({} points), {} images, {} IMU "
+                    "Simulated: a Scout 2.0, {:.1f} s, seed {}. {} scans, {} images, {} IMU "
                     "samples, {} wheel "
                     "samples. The calibration is the simulator's own and the truth is what happened: both "
                     "are exact.\n\n",
-                    counts.duration_s, scenario.seeds.front(), counts.scans, counts.points, counts.images,
-                    counts.imu, counts.wheels);
+                    counts.duration_s, scenario.seeds.front(), counts.scans, counts.images, counts.imu,
+                    counts.wheels);
 }
 
 std::string conventions(const MessageNames& names) {

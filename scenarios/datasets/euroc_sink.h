@@ -20,12 +20,12 @@ class EurocSink final : public DatasetSink {
 
   bool needs_scan(int64_t, Time) const override { return false; }
   bool needs_image(Time stamp) const override;
+  std::filesystem::path image_file(Time stamp) const override;
   bool wants_png() const override { return camera_; }
   void write(const DatasetSample& sample) override;
   void finish() override;
 
  private:
-  std::filesystem::path image_file(Time stamp) const;
   struct WaitingImage {
     Time stamp;
     std::string png;

@@ -4,6 +4,7 @@
 #include <deque>
 #include <filesystem>
 #include <functional>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -45,8 +46,12 @@ Time end_of(const CameraMeasurement& m) {
 /// The sensors' side: samples of one stretch after the other.
 class Acquisition {
  public:
-  Acquisition(const Scenario& scenario, const World& world)
-      : rig_(world, scenario.rig, scenario.events.sensors, scenario.seeds.front(), scenario.lighting) {}
+  Acquisition(const Scenario& scenario, const World& world, const Sinks& sinks)
+      : sinks_(sinks),
+        rig_(world, scenario.rig, scenario.events.sensors, scenario.seeds.front(), scenario.lighting) {
+    rig_.leave_out({.scan = [this](int64_t index, Time stamp) { return !needed(index, stamp); },
+                    .image = [this](Time stamp) { return mean_grey_before(stamp); }});
+  }
 
   SampleChunk next(const Motion& motion) {
     SampleChunk chunk{.until = motion.until};
@@ -58,6 +63,24 @@ class Acquisition {
   Time needed_from() const { return rig_.needed_from(); }
 
  private:
+  bool needed(int64_t scan, Time stamp) const {
+    return std::any_of(sinks_.begin(), sinks_.end(),
+                       [&](const auto& s) { return s->needs_scan(scan, stamp); });
+  }
+
+  // Of an image that an earlier, interrupted export has written everywhere.
+  std::optional<double> mean_grey_before(Time stamp) const {
+    std::filesystem::path file;
+    for (const auto& sink : sinks_) {
+      if (sink->needs_image(stamp)) return std::nullopt;
+      if (file.empty()) file = sink->image_file(stamp);
+    }
+    if (file.empty()) return std::nullopt;
+    const GreyImage image = decode_png_grey8(read_file(file), file.string());
+    const uint64_t sum = std::accumulate(image.grey.begin(), image.grey.end(), uint64_t{0});
+    return static_cast<double>(sum) / static_cast<double>(image.grey.size());
+  }
+
   DatasetSample sample(Measurement&& measurement, const Trajectory& trajectory) {
     DatasetSample sample{.measurement = std::move(measurement)};
     sample.index = next_index_[sample.measurement.index()]++;
@@ -70,15 +93,13 @@ class Acquisition {
     return sample;
   }
 
+  const Sinks& sinks_;
   Rig rig_;
   int64_t next_index_[std::variant_size_v<Measurement>] = {};
 };
 
 void count(const DatasetSample& sample, DatasetCounts& counts) {
-  if (const auto* lidar = std::get_if<LidarMeasurement>(&sample.measurement)) {
-    ++counts.scans;
-    counts.points += static_cast<int64_t>(lidar->scan.points.size());
-  }
+  counts.scans += std::holds_alternative<LidarMeasurement>(sample.measurement);
   counts.images += std::holds_alternative<CameraMeasurement>(sample.measurement);
   counts.imu += std::holds_alternative<ImuMeasurement>(sample.measurement);
   counts.wheels += std::holds_alternative<WheelMeasurement>(sample.measurement);
@@ -127,7 +148,7 @@ class ExportRun final : public Pipeline {
     return {.work =
                 [this, driving] {
                   *driving = std::make_unique<Driving>(place_.scenario(), place_.world(), &drive_clock_);
-                  acquisition_ = std::make_unique<Acquisition>(place_.scenario(), place_.world());
+                  acquisition_ = std::make_unique<Acquisition>(place_.scenario(), place_.world(), sinks_);
                 },
             .commit = [this, driving] { driving_ = std::move(*driving); }};
   }

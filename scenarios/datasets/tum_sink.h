@@ -16,12 +16,12 @@ class TumSink final : public DatasetSink {
 
   bool needs_scan(int64_t, Time) const override { return false; }
   bool needs_image(Time stamp) const override;
+  std::filesystem::path image_file(Time stamp) const override;
   bool wants_png() const override { return camera_; }
   void write(const DatasetSample& sample) override;
   void finish() override;
 
  private:
-  std::filesystem::path image_file(Time stamp) const;
   std::filesystem::path folder_;
   bool camera_;
   SE3 T_base_tracked_;  ///< camera, or base

@@ -4,6 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <numeric>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "core/errors.h"
@@ -47,9 +51,10 @@ struct Recording {
 };
 
 Recording record(const World& world, const RigConfig& config, const SensorEvents& events, double duration_s,
-                 Duration step = {100'000'000}) {
+                 Duration step = {100'000'000}, TakenBefore taken = {}) {
   const Trajectory trajectory = shapes::along(shapes::lively, duration_s);
   Rig rig(world, config, events, 3);
+  rig.leave_out(std::move(taken));
   Recording run;
   const auto sink = [&](Measurement&& m) {
     if (auto* image = std::get_if<CameraMeasurement>(&m)) {
@@ -79,6 +84,32 @@ void expect_same_images(const Recording& a, const Recording& b) {
 
 double mean_grey(const CameraMeasurement& image) {
   return views::moments(image.frame.grey).mean;
+}
+
+// Exposure follows the images: those that are left out must steer it as if they had been taken.
+TEST(RigCamera, ImagesTakenBeforeAreLeftOutAndChangeNothingElse) {
+  const World world = lit_room();
+  const Recording whole = record(world, rig_config(), {}, 1.0);
+  std::map<int64_t, double> mean_grey_before;  // by stamp; all but every third
+  for (size_t i = 0; i < whole.images.size(); ++i)
+    if (const std::vector<uint8_t>& grey = whole.images[i].frame.grey; i % 3 != 1)
+      mean_grey_before[whole.images[i].frame.stamp.ns] =
+          std::accumulate(grey.begin(), grey.end(), 0.0) / static_cast<double>(grey.size());
+  const auto taken = [&](Time stamp) -> std::optional<double> {
+    const auto found = mean_grey_before.find(stamp.ns);
+    return found == mean_grey_before.end() ? std::nullopt : std::optional(found->second);
+  };
+  const Recording rest = record(world, rig_config(), {}, 1.0, {100'000'000}, {.scan = {}, .image = taken});
+  ASSERT_EQ(rest.images.size(), whole.images.size());
+  EXPECT_EQ(rest.ends_ns, whole.ends_ns);
+  for (size_t i = 0; i < whole.images.size(); ++i) {
+    EXPECT_EQ(rest.images[i].gain, whole.images[i].gain) << i;
+    EXPECT_EQ(rest.images[i].exposure_s, whole.images[i].exposure_s) << i;
+    if (i % 3 == 1)
+      EXPECT_TRUE(rest.images[i].frame.grey == whole.images[i].frame.grey) << i;
+    else
+      EXPECT_TRUE(rest.images[i].frame.grey.empty()) << i;
+  }
 }
 
 TEST(RigCamera, ComesAtThirtyHertzInOrderOfTheEndOfExposure) {

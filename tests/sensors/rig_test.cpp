@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "core/errors.h"
 #include "tests/sensors/shapes.h"
@@ -69,7 +71,8 @@ struct Recording {
   std::vector<int64_t> ends_ns;
 };
 
-Recording record(const World& world, const SensorEvents& events, double duration_s, const RigConfig& config = {}) {
+Recording record(const World& world, const SensorEvents& events, double duration_s,
+                 const RigConfig& config = {}) {
   const Trajectory trajectory = shapes::along(shapes::lively, duration_s);
   Rig rig(world, config, events, 3);
   Recording run;
@@ -102,6 +105,31 @@ TEST(Rig, RatesAndOrder) {
     EXPECT_EQ(run.imu[i].sample.stamp.ns, static_cast<int64_t>(i) * 10'000'000);
   for (size_t i = 1; i < run.lidar.size(); ++i)  // no firing cycle is missing or twice
     EXPECT_EQ((run.lidar[i].scan.stamp - run.lidar[i - 1].scan.end).ns, 55296 - 34560);
+}
+
+TEST(Rig, ScansTakenBeforeAreLeftOutAndChangeNothingElse) {
+  const World world = shapes::room_world({-6, -5, -1}, {7, 6, 2});
+  const Trajectory trajectory = shapes::along(shapes::lively, 1.0);
+  const auto scans = [&](TakenBefore taken) {
+    Rig rig(world, RigConfig{}, SensorEvents{}, 3);
+    rig.leave_out(std::move(taken));
+    std::vector<LidarMeasurement> all;
+    rig.advance(Time::from_seconds(1), trajectory, rolling, [&](Measurement&& m) {
+      if (auto* lidar = std::get_if<LidarMeasurement>(&m)) all.push_back(std::move(*lidar));
+    });
+    return all;
+  };
+  const auto whole = scans({});
+  const auto rest = scans({.scan = [](int64_t index, Time) { return index % 2 == 0; }, .image = {}});
+  ASSERT_EQ(rest.size(), whole.size());
+  for (size_t i = 0; i < whole.size(); ++i) {
+    EXPECT_EQ(rest[i].scan.stamp, whole[i].scan.stamp);
+    EXPECT_EQ(rest[i].scan.end, whole[i].scan.end);
+    EXPECT_EQ(rest[i].T_world_lidar.translation, whole[i].T_world_lidar.translation);
+    EXPECT_EQ(rest[i].scan.points.empty(), i % 2 == 0) << i;
+    if (i % 2 == 0) continue;
+    EXPECT_TRUE(describe(Measurement(rest[i])) == describe(Measurement(whole[i]))) << i;
+  }
 }
 
 TEST(Rig, WaitsForTheTrajectoryAndSaysWhatItNeeds) {
