@@ -50,7 +50,7 @@ TEST(CloudFiles, LabelsAreThoseOfSemanticKitti) {
 }
 
 TEST(EurocFolder, IsTheAslLayout) {
-  const fs::path folder = scratch_folder() / "euroc";
+  const fs::path folder = scratch_folder() / "euroc_sink";
   const DatasetFacts facts = askew_facts(folder);
   EurocSink sink(facts);
   EXPECT_TRUE(sink.needs_image(Time{0}));
@@ -93,7 +93,7 @@ TEST(EurocFolder, IsTheAslLayout) {
 }
 
 TEST(KittiFolder, PosesAreOfCamera0InItsFirstPlace) {
-  const fs::path folder = scratch_folder() / "kitti";
+  const fs::path folder = scratch_folder() / "kitti_sink";
   const DatasetFacts facts = askew_facts(folder);
   KittiSink sink(facts);
   const SE3 T_world_a = SE3::from_rpy({0, 0, 0.3}, {5, 6, 0}),
@@ -118,7 +118,7 @@ TEST(KittiFolder, PosesAreOfCamera0InItsFirstPlace) {
 }
 
 TEST(KittiFolder, WithoutACameraItSitsInTheLidar) {
-  const fs::path folder = scratch_folder() / "kitti_blind";
+  const fs::path folder = scratch_folder() / "kitti_sink_blind";
   KittiSink sink(askew_facts(folder, false));
   sink.write(scan_sample(0, 0));
   sink.finish();
@@ -133,7 +133,7 @@ TEST(KittiFolder, WithoutACameraItSitsInTheLidar) {
 }
 
 TEST(CloudFolder, NamesScansByNumberAndListsTheirTimes) {
-  const fs::path folder = scratch_folder() / "clouds";
+  const fs::path folder = scratch_folder() / "cloud_sink";
   const DatasetFacts facts = askew_facts(folder);
   CloudFolderSink sink(facts, CloudFolderSink::Format::ply);
   EXPECT_TRUE(sink.needs_scan(0, Time{0}));
@@ -145,7 +145,7 @@ TEST(CloudFolder, NamesScansByNumberAndListsTheirTimes) {
 }
 
 TEST(TumFolder, ListsImagesAndTracksTheCamera) {
-  const fs::path folder = scratch_folder() / "tum";
+  const fs::path folder = scratch_folder() / "tum_sink";
   const DatasetFacts facts = askew_facts(folder);
   TumSink sink(facts);
   DatasetSample imu = imu_sample(0.01, {0, 0, 0}, {1, 2, 9.5});
@@ -164,7 +164,7 @@ TEST(TumFolder, ListsImagesAndTracksTheCamera) {
 }
 
 TEST(TruthTrajectory, IsOfTheBaseAtEveryScan) {
-  const fs::path folder = scratch_folder() / "truth";
+  const fs::path folder = scratch_folder() / "truth_sink";
   TruthTrajectorySink sink(askew_facts(folder));
   sink.write(scan_sample(0, 0.5, SE3::from_rpy({0, 0, 0}, {1, 2, 3})));
   sink.write(imu_sample(0.6));
