@@ -10,6 +10,7 @@
 
 #include "core/files.h"
 #include "core/ordered_parallel.h"
+#include "scenarios/datasets/scan_columns.h"
 #include "scenarios/driving.h"
 #include "scenarios/pipeline.h"
 #include "scenarios/png_file.h"
@@ -48,6 +49,7 @@ class Acquisition {
  public:
   Acquisition(const Scenario& scenario, const World& world, const Sinks& sinks)
       : sinks_(sinks),
+        lasers_(laser_table(scenario.rig.sensors.lidar.model)),
         rig_(world, scenario.rig, scenario.events.sensors, scenario.seeds.front(), scenario.lighting) {
     rig_.leave_out({.scan = [this](int64_t index, Time stamp) { return !needed(index, stamp); },
                     .image = [this](Time stamp) { return mean_grey_before(stamp); }});
@@ -82,6 +84,7 @@ class Acquisition {
   }
 
   DatasetSample sample(Measurement&& measurement, const Trajectory& trajectory) {
+    if (auto* lidar = std::get_if<LidarMeasurement>(&measurement)) arrange_in_columns(*lidar, lasers_);
     DatasetSample sample{.measurement = std::move(measurement)};
     sample.index = next_index_[sample.measurement.index()]++;
     std::visit(
@@ -94,6 +97,7 @@ class Acquisition {
   }
 
   const Sinks& sinks_;
+  const LaserTable& lasers_;
   Rig rig_;
   int64_t next_index_[std::variant_size_v<Measurement>] = {};
 };

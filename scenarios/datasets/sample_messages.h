@@ -25,7 +25,7 @@ struct ImuDeviations {
 };
 
 /// Layout that drivers of rotating LiDARs share: x y z intensity float32, ring uint16, time float32 (s after the stamp);
-/// 22 bytes a point without gaps, in order of firing.
+/// 22 bytes a point without gaps, in the scan's order.
 PointCloudMessage cloud_message(const LidarScan& scan, const std::string& frame_id);
 /// Without an orientation of the device: identity, and -1 as first element of its covariance.
 ImuMessage imu_message(const ImuSample& sample, const ImuDeviations& deviations, const std::string& frame_id);

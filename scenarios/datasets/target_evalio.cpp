@@ -39,7 +39,7 @@ HERE = Path(__file__).resolve().parent
 
 
 def columns_by_time(scan):
-    """Points come in order of firing: the column is the firing cycle."""
+    """The column is the firing cycle."""
     for point in scan.points:
         point.col = int(point.t.to_sec() / {cycle_s} + 0.01)
 

@@ -48,6 +48,7 @@ const F32 = 7, U16 = 4;
 const layout = [["x", 0, F32], ["y", 4, F32], ["z", 8, F32], ["intensity", 12, F32], ["ring", 16, U16], ["time", 18, F32]].map(
   ([name, offset, datatype]) => ({ name, offset, datatype, count: 1 }),
 );
+const column = (point) => Math.floor((point[5] + 5e-7) / 55.296e-6);  // firing cycle of a VLP-16
 const clouds = on("/velodyne_points").map(({ message, recorded }) => {
   assert.deepEqual(message.fields, layout);
   assert.deepEqual([message.height, message.point_step, message.is_dense, message.is_bigendian], [1, 22, true, false]);
@@ -62,12 +63,15 @@ const clouds = on("/velodyne_points").map(({ message, recorded }) => {
   points.forEach((point, i) => {
     assert.ok(point.every(Number.isFinite), `point ${i}: ${point}`);
     assert.ok(point[4] < 16 && point[5] >= 0 && point[5] < 0.11, `point ${i}: ring ${point[4]}, time ${point[5]}`);
-    if (i > 0) assert.ok(point[5] >= points[i - 1][5], `point ${i}: time ${point[5]} after ${points[i - 1][5]}`);
+    if (i === 0) return;
+    const step = column(point) - column(points[i - 1]);
+    assert.ok(step > 0 || (step === 0 && point[4] > points[i - 1][4]), `point ${i}: ${point} after ${points[i - 1]}`);
   });
+  assert.equal(points.at(-1)[5], Math.max(...points.map((point) => point[5])), "the last point is the latest");
   near(Number(recorded - message.header.stamp) * 1e-9, 0.1, 0.005, "a scan is recorded at its end, s after its stamp");
   return { stamp: message.header.stamp, points };
 });
-say(`${clouds.length} clouds in the common layout, times ascending`);
+say(`${clouds.length} clouds in the common layout, column by column, by ring within one`);
 
 const imus = on("/imu/data");
 for (const { message } of imus)

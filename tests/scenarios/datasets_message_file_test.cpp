@@ -110,7 +110,7 @@ TEST_P(MessageFiles, AreTheSameBytesTwice) {
 }
 
 TEST_P(MessageFiles, AppearWhenFinished) {
-  const fs::path folder = scratch_folder() / "unfinished";
+  const fs::path folder = scratch_folder() / ("unfinished_" + GetParam().name);
   const fs::path file = folder / ("file." + GetParam().name);
   {
     const auto writer = GetParam().open(file);
