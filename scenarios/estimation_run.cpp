@@ -166,8 +166,7 @@ Step EstimationRun::map(Lane& lane) {
                 if (source_->drives_on_beliefs())
                   lane.beliefs.insert(lane.beliefs.end(), beliefs->begin(), beliefs->end());
                 const Time until = located->chunk->until;
-                events_.on_progress((until - lane.consumed).seconds(),
-                                     static_cast<int64_t>(beliefs->size()));
+                events_.on_progress((until - lane.consumed).seconds(), static_cast<int64_t>(beliefs->size()));
                 lane.consumed = until;
                 lane.busy = false;
               }};
@@ -217,9 +216,9 @@ FinishedRun EstimationRun::write_result(Lane& lane) {
   source_->add_times(clock);
   const double wall_s = static_cast<double>(clock.now_ns() - start_ns_) * 1e-9;
   run.real_time_factor = run.metrics.duration_s / wall_s;
-  write_timing(
-      folder.path(),
-      {.wall_s = wall_s, .real_time_factor = run.real_time_factor, .made_by = source_->made_by()}, clock);
+  write_timing(folder.path(),
+               {.wall_s = wall_s, .real_time_factor = run.real_time_factor, .made_by = source_->made_by()},
+               clock);
   write_report(folder.path());
   folder.commit();
   return run;

@@ -159,7 +159,8 @@ struct EmbreePacket {
 
 struct Raycaster::Impl {
   explicit Impl(const World& w) : world(w) {
-    device = rtcNewDevice("isa=avx2,threads=1,set_affinity=0");
+    // Without `threads`: in Embree that is a limit for all users of TBB in the process.
+    device = rtcNewDevice("isa=avx2,set_affinity=0");
     if (!device) throw std::runtime_error("Embree needs a CPU with AVX2");
     still = new_scene(device);
     moving = new_scene(device);

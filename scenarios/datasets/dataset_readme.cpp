@@ -23,7 +23,8 @@ std::string topics(const ExportPlan& plan, const DatasetCounts& n) {
       row(names.points, "sensor_msgs/PointCloud2", n.scans, s,
           fmt::format(
               "frame `{}`; x y z intensity float32, ring uint16, time float32 (s after the stamp), 22 bytes "
-              "a point, firing cycle by firing cycle and by ring within one, each in the frame at its own time; stamp: first firing",
+              "a point, firing cycle by firing cycle and by ring within one, each in the frame at its own "
+              "time; stamp: first firing",
               names.lidar_frame));
   text += row(
       names.imu, "sensor_msgs/Imu", n.imu, s,

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/ordered_parallel.h"
 #include "sensors/firing_poses.h"
 #include "tests/sensors/shapes.h"
 
@@ -115,6 +116,16 @@ TEST(Raycaster, ObjectsMoveAndVanish) {
   raycaster.set_object_pose(door, Eigen::Affine3d::Identity(), true);
   raycaster.commit();
   EXPECT_NEAR(range(), 5, 1e-6);
+}
+
+// Embree's own setting of threads would bound those of the whole process.
+TEST(Raycaster, LeavesTheOthersTheirThreads) {
+  const int before = thread_count();
+  set_thread_count(2);
+  const World world = shapes::room_world(Vec3(-5, -5, 0), Vec3(5, 5, 3));
+  const Raycaster raycaster(world);
+  EXPECT_EQ(thread_count(), 2);
+  set_thread_count(before);
 }
 
 TEST(FiringPoses, StayWithinAMicrometreOfTheSpline) {
