@@ -58,11 +58,14 @@ struct Renderer::Impl {
         triangles(world),
         textures(world),
         lights(world, triangles, illumination) {
-    tree = TriangleTree(triangles);
-    const LightMapCharts charts = chart_surfaces(triangles, kNodeSpacing_m, kMostNodes);
-    records = surface_records(triangles, charts, textures);
-    tree.rename(facets(triangles, records));
+    // The large tables last, so that they do not meet in memory what is needed for a while only.
+    LightMapCharts charts = chart_surfaces(triangles, kNodeSpacing_m, kMostNodes);
     light_map = bake_light_map({triangles, charts, textures, lights, raycaster});
+    charts.sites = {};
+    tree = TriangleTree(triangles);
+    records = surface_records(triangles, charts, textures);
+    charts.of_triangle = {};
+    tree.rename(facets(triangles, records));
     // Interpolation reads the row below the last one, with weight 0.
     for (const LightMapCharts::Grid& grid : charts.grids) padding = std::max(padding, size_t{grid.width} + 2);
     first_of_object = triangles.first_of_object;

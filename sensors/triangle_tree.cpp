@@ -25,8 +25,8 @@ struct Box {
 
 struct Item {
   Box box;
-  Vec3f middle;
   uint32_t triangle;
+  Vec3f middle() const { return 0.5f * (box.low + box.high); }
 };
 
 /// Items and the box around them.
@@ -49,7 +49,7 @@ struct Cut {
   float low = 0, per_bin = 0;
   size_t bins = 0;
   size_t bin(const Item& item) const {
-    return std::min(kBins - 1, static_cast<size_t>(std::max(0.0f, (item.middle[axis] - low) * per_bin)));
+    return std::min(kBins - 1, static_cast<size_t>(std::max(0.0f, (item.middle()[axis] - low) * per_bin)));
   }
 };
 
@@ -75,7 +75,7 @@ size_t cheapest(const std::array<Bin, kBins>& bins) {
 /// Reorders the items and returns how many lie to one side; neither side is empty.
 size_t split(std::span<Item> items) {
   Box middles;
-  for (const Item& item : items) middles.add(item.middle);
+  for (const Item& item : items) middles.add(item.middle());
   Cut cut;
   const float extent_m = (middles.high - middles.low).maxCoeff(&cut.axis);
   if (!(extent_m > 0)) return items.size() / 2;
@@ -165,12 +165,11 @@ Box box_of(const PlacedTriangle& t) {
 TriangleTree::TriangleTree(const PlacedTriangles& triangles) {
   std::vector<Item> items;
   items.reserve(triangles.all.size());
-  for (size_t i = 0; i < triangles.all.size(); ++i) {
-    if (!(triangles.all[i].area_m2 > 0)) continue;
-    const Box box = box_of(triangles.all[i]);
-    items.push_back({box, 0.5f * (box.low + box.high), static_cast<uint32_t>(i)});
-  }
+  for (size_t i = 0; i < triangles.all.size(); ++i)
+    if (triangles.all[i].area_m2 > 0) items.push_back({box_of(triangles.all[i]), static_cast<uint32_t>(i)});
   Builder(triangles, *this).node(items);
+  nodes.shrink_to_fit();
+  leaves.shrink_to_fit();
 }
 
 void TriangleTree::rename(const std::vector<uint32_t>& names) {
