@@ -49,6 +49,12 @@ void copy(const ShadedTile& tile, int left, int top, const ViewRays& rays, View&
   }
 }
 
+// Assigning {} or clearing would keep the memory.
+template <class T>
+void release(std::vector<T>& values) {
+  std::vector<T>().swap(values);
+}
+
 }  // namespace
 
 struct Renderer::Impl {
@@ -61,15 +67,15 @@ struct Renderer::Impl {
     // The large tables last, so that they do not meet in memory what is needed for a while only.
     LightMapCharts charts = chart_surfaces(triangles, kNodeSpacing_m, kMostNodes);
     light_map = bake_light_map({triangles, charts, textures, lights, raycaster});
-    charts.sites = {};
+    release(charts.sites);
     tree = TriangleTree(triangles);
     records = surface_records(triangles, charts, textures);
-    charts.of_triangle = {};
+    release(charts.of_triangle);
     tree.rename(facets(triangles, records));
     // Interpolation reads the row below the last one, with weight 0.
     for (const LightMapCharts::Grid& grid : charts.grids) padding = std::max(padding, size_t{grid.width} + 2);
     first_of_object = triangles.first_of_object;
-    triangles.all = {};
+    release(triangles.all);
     set_levels(std::vector<float>(lights.groups.size(), 1.0f));
   }
 
