@@ -10,6 +10,7 @@
 
 #include "core/errors.h"
 #include "core/files.h"
+#include "core/suggestion.h"
 
 namespace vsslam {
 
@@ -61,8 +62,7 @@ std::string join(const std::vector<std::string>& words) {
 }
 
 std::string hint(std::string_view word, const std::vector<std::string>& candidates) {
-  const std::string near = nearest(word, candidates);
-  return near.empty() ? fmt::format(" (one of: {})", join(candidates)) : fmt::format(" (did you mean {}?)", near);
+  return fmt::format(" ({})", suggestion(word, candidates));
 }
 
 template <class T>

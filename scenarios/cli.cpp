@@ -1,7 +1,6 @@
 #include "scenarios/cli.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -12,6 +11,7 @@
 
 #include "core/errors.h"
 #include "core/ordered_parallel.h"
+#include "core/suggestion.h"
 #include "scenarios/wall_clock.h"
 
 namespace vsslam {
@@ -29,12 +29,6 @@ std::vector<std::string> option_names(const CLI::App& command) {
   for (const CLI::Option* option : command.get_options({}))
     for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
   return names;
-}
-
-std::string suggestion(const std::string& word, const std::vector<std::string>& words) {
-  const std::string near = nearest(word, words);
-  return near.empty() ? fmt::format("one of: {}", fmt::join(words, ", "))
-                      : fmt::format("did you mean {}?", near);
 }
 
 // Mistyped commands and options, which CLI11 reports without a hint.

@@ -1,12 +1,12 @@
 #include "scenarios/library_files.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cstdlib>
 
 #include "core/errors.h"
+#include "core/suggestion.h"
 
 namespace vsslam {
 
@@ -49,10 +49,7 @@ fs::path library_file(std::string_view kind, std::string_view name) {
   if (names.empty())
     throw InputError(
         fmt::format("no {} \"{}\": {} is empty", singular(kind), name, library_folder(kind).string()));
-  const std::string near = nearest(name, names);
-  throw InputError(fmt::format("no {} \"{}\" ({})", singular(kind), name,
-                               near.empty() ? fmt::format("one of: {}", fmt::join(names, ", "))
-                                            : fmt::format("did you mean {}?", near)));
+  throw InputError(fmt::format("no {} \"{}\" ({})", singular(kind), name, suggestion(name, names)));
 }
 
 fs::path find_file(std::string_view kind, const std::string& name_or_path) {

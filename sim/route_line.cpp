@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/errors.h"
+#include "core/suggestion.h"
 
 namespace vsslam {
 
@@ -19,10 +20,7 @@ const Route& route_named(const World& world, const std::string& name, const std:
     if (route.name == name) return route;
     names.push_back(route.name);
   }
-  const std::string near = nearest(name, names);
-  const std::string hint = !near.empty()   ? fmt::format("did you mean {}?", near)
-                           : names.empty() ? "it has none"
-                                           : fmt::format("one of: {}", fmt::join(names, ", "));
+  const std::string hint = names.empty() ? "it has none" : suggestion(name, names);
   throw InputError(fmt::format("{}: no route \"{}\" in world \"{}\" ({})", place, name, world.name, hint));
 }
 

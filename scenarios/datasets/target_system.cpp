@@ -1,13 +1,12 @@
 #include "scenarios/datasets/target_system.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <array>
 #include <utility>
 
-#include "core/config.h"
 #include "core/errors.h"
+#include "core/suggestion.h"
 #include "scenarios/datasets/target_configurations.h"
 
 namespace vsslam {
@@ -24,10 +23,7 @@ constexpr std::array<std::pair<DatasetFormat, std::string_view>, 7> kFormats = {
      {DatasetFormat::tum, "tum"}}};
 
 [[noreturn]] void fail(const char* what, std::string_view name, const std::vector<std::string>& names) {
-  const std::string near = nearest(name, names);
-  throw InputError(fmt::format("unknown {} \"{}\" ({})", what, name,
-                               near.empty() ? fmt::format("one of: {}", fmt::join(names, ", "))
-                                            : fmt::format("did you mean {}?", near)));
+  throw InputError(fmt::format("unknown {} \"{}\" ({})", what, name, suggestion(name, names)));
 }
 
 }  // namespace

@@ -1,15 +1,14 @@
 #include "scenarios/datasets/truth_files.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <utility>
 
-#include "core/config.h"
 #include "core/errors.h"
 #include "core/files.h"
+#include "core/suggestion.h"
 #include "scenarios/datasets/cloud_files.h"
 #include "scenarios/datasets/image_truth_sink.h"
 #include "scenarios/datasets/point_truth_sink.h"
@@ -95,10 +94,7 @@ TruthKind parse_truth(std::string_view name) {
     if (known == name) return kind;
   std::vector<std::string> names = truth_names();
   names.insert(names.begin(), "camera");
-  const std::string near = nearest(name, names);
-  throw InputError(fmt::format("--with: unknown extra \"{}\" ({})", name,
-                               near.empty() ? fmt::format("one of: {}", fmt::join(names, ", "))
-                                            : fmt::format("did you mean {}?", near)));
+  throw InputError(fmt::format("--with: unknown extra \"{}\" ({})", name, suggestion(name, names)));
 }
 
 std::vector<std::unique_ptr<DatasetSink>> truth_sinks(const DatasetFacts& facts, const World& world,

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/errors.h"
+#include "core/suggestion.h"
 
 namespace vsslam {
 
@@ -32,10 +33,7 @@ Method parse_method(std::string_view name) {
     if (known == name) return method;
     names.emplace_back(known);
   }
-  const std::string near = nearest(name, names);
-  throw InputError(fmt::format("unknown method \"{}\" ({})", name,
-                               near.empty() ? fmt::format("one of: {}", fmt::join(names, ", "))
-                                            : fmt::format("did you mean {}?", near)));
+  throw InputError(fmt::format("unknown method \"{}\" ({})", name, suggestion(name, names)));
 }
 
 const std::vector<Method>& all_methods() {
