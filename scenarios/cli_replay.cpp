@@ -55,20 +55,12 @@ int replay(const ReplayArguments& arguments, const Console& console) {
   catch_interrupts();
   WallClock clock;
   const std::string title = std::filesystem::path(arguments.recording).filename().string();
-  Progress progress(console.progress_style(), console.err, clock, title);
+  auto progress = std::make_unique<Progress>(console.progress_style(), console.err, clock, title);
   auto source = std::make_unique<ReplayedRecording>(
-      request_of(arguments, console), [&progress](const std::string& note) { progress.note(note); });
+      request_of(arguments, console), [&shown = *progress](const std::string& note) { shown.note(note); });
   Runner runner(std::move(source), resolve_methods(split_list(arguments.methods)),
                 {.out = console.out_folder, .threads = console.threads});
-  try {
-    runner.run(interrupt_flag(), progress);
-  } catch (...) {
-    console.err << finished_text(runner.finished());
-    throw;
-  }
-  const std::vector<FinishedRun> runs = runner.finished();
-  console.text() << summary_text(runs);
-  if (console.json) console.out << summary_json(runs);
+  run_and_summarize(runner, std::move(progress), console);
   return kDone;
 }
 

@@ -34,17 +34,10 @@ int run(const RunArguments& arguments, const Console& console) {
   catch_interrupts();
   const Scenario scenario = resolve(arguments);
   Runner runner(scenario, {.out = console.out_folder, .threads = console.threads});
-  try {
-    WallClock clock;
-    Progress progress(console.progress_style(), console.err, clock, scenario.name);
-    runner.run(interrupt_flag(), progress);
-  } catch (...) {
-    console.err << finished_text(runner.finished());
-    throw;
-  }
-  const std::vector<FinishedRun> runs = runner.finished();
-  console.text() << summary_text(runs);
-  if (console.json) console.out << summary_json(runs);
+  WallClock clock;
+  const std::vector<FinishedRun> runs = run_and_summarize(
+      runner, std::make_unique<Progress>(console.progress_style(), console.err, clock, scenario.name),
+      console);
   const bool good =
       std::all_of(runs.begin(), runs.end(), [](const FinishedRun& r) { return r.as_expected(); });
   return good ? kDone : kExpectationFailed;

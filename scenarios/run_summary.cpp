@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "scenarios/interrupt.h"
+
 namespace vsslam {
 
 namespace {
@@ -90,6 +92,22 @@ std::string summary_json(std::span<const FinishedRun> runs) {
     text += "\n" + run.metrics.json();
   }
   return text + "]\n";
+}
+
+std::vector<FinishedRun> run_and_summarize(Runner& runner, std::unique_ptr<Progress> progress,
+                                           const Console& console) {
+  try {
+    runner.run(interrupt_flag(), *progress);
+  } catch (...) {
+    progress.reset();  // its bar goes first
+    console.err << finished_text(runner.finished());
+    throw;
+  }
+  progress.reset();
+  const std::vector<FinishedRun> runs = runner.finished();
+  console.text() << summary_text(runs);
+  if (console.json) console.out << summary_json(runs);
+  return runs;
 }
 
 }  // namespace vsslam

@@ -1,9 +1,12 @@
 // What a run tells at its end.
 #pragma once
 
+#include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
+#include "scenarios/cli.h"
 #include "scenarios/runner.h"
 
 namespace vsslam {
@@ -16,5 +19,9 @@ std::string finished_text(std::span<const FinishedRun> runs);
 
 /// A JSON list of the metrics.json that were written.
 std::string summary_json(std::span<const FinishedRun> runs);
+
+/// Runs, with progress meanwhile, and prints the summary, or what was finished before something went wrong.
+std::vector<FinishedRun> run_and_summarize(Runner& runner, std::unique_ptr<Progress> progress,
+                                           const Console& console);
 
 }  // namespace vsslam
