@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <regex>
+#include <algorithm>
 #include <vector>
 
 #include "core/errors.h"
@@ -24,12 +24,19 @@ void clear_away(const fs::path& path) {
   if (error) throw ResourceError(fmt::format("{}: cannot remove: {}", path.string(), error.message()));
 }
 
+// Whether the name ends in ".part" and a number.
+bool is_part(const fs::path& path) {
+  const std::string end = path.extension().string();
+  constexpr std::string_view kPart = ".part";
+  return end.size() > kPart.size() && end.starts_with(kPart) &&
+         std::all_of(end.begin() + kPart.size(), end.end(), [](char c) { return c >= '0' && c <= '9'; });
+}
+
 // Files that a killed export was busy with.
 void remove_parts(const fs::path& folder) {
-  static const std::regex part("\\.part[0-9]+$");
   std::vector<fs::path> parts;
   for (const auto& entry : fs::recursive_directory_iterator(folder))
-    if (std::regex_search(entry.path().filename().string(), part)) parts.push_back(entry.path());
+    if (is_part(entry.path())) parts.push_back(entry.path());
   for (const fs::path& path : parts) clear_away(path);
 }
 

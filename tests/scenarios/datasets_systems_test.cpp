@@ -4,7 +4,6 @@
 #include <yaml-cpp/yaml.h>
 
 #include <cmath>
-#include <regex>
 
 #include "core/errors.h"
 #include "scenarios/datasets/target_system.h"
@@ -13,7 +12,9 @@
 namespace vsslam {
 namespace {
 
+using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 std::string file_of(const char* system, const std::string& path, const DatasetFacts& facts) {
   for (const ExtraFile& file : target_system(system).configuration(facts))
@@ -24,8 +25,9 @@ std::string file_of(const char* system, const std::string& path, const DatasetFa
 
 // OpenCV's dialect has a header that YAML does not know, and tags.
 YAML::Node parse(std::string text) {
-  text = std::regex_replace(text, std::regex("%YAML:1.0\n(---\n)?"), "");
-  return YAML::Load(std::regex_replace(text, std::regex("!!opencv-matrix"), ""));
+  for (const std::string foreign : {"%YAML:1.0\n", "!!opencv-matrix"})
+    for (size_t at = 0; (at = text.find(foreign, at)) != std::string::npos;) text.erase(at, foreign.size());
+  return YAML::Load(text);
 }
 
 YAML::Node config(const char* system, const std::string& path, const DatasetFacts& facts) {
@@ -175,11 +177,10 @@ TEST_F(Systems, SmallNumbersAreNumbersToPython) {
   small.rig.imu.gyro_noise_radps_rthz = 1e-5;
   small.rig.imu.accel_bias_walk_mps3_rthz = 2e-7;
   small.rig.lidar.T_base_lidar.translation.x() = 3e-16;
-  const std::regex pointless("(^|[^0-9.])[0-9]+e[-+]?[0-9]");
   for (const TargetSystem& system : target_systems())
     for (const ExtraFile& file : system.configuration(small)) {
       if (!file.path.ends_with(".yaml")) continue;
-      EXPECT_FALSE(std::regex_search(file.content, pointless)) << file.path;
+      EXPECT_THAT(file.content, Not(ContainsRegex("(^|[^0-9.])[0-9]+e[-+]?[0-9]"))) << file.path;
     }
   EXPECT_THAT(file_of("lio-sam", "lio_sam/params.yaml", small), HasSubstr("imuGyrNoise: 1.0e-05\n"));
 }
