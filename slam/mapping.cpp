@@ -67,6 +67,7 @@ void Mapping::Impl::add_key(const OdometryScan& scan) {
   if (!keys.empty()) {
     const SE3 T_last_key = keys.back().T_odom_base.inverse() * key.T_odom_base;
     graph.add_edge({keys.back().id, key.id, T_last_key, config.graph.odometry_information()});
+    key.way_m = keys.back().way_m + T_last_key.translation.norm();
   }
   keys.push_back(std::move(key));
 }

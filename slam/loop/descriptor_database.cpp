@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <nanoflann.hpp>
+#include <numeric>
 #include <utility>
 
 namespace vsslam {
@@ -73,12 +74,14 @@ void DescriptorDatabase::nearest_ring_keys(const ScanContext& context, size_t el
   for (size_t i = 0; i < count; ++i) out.push_back(nearest[i].second);
 }
 
-std::vector<size_t> DescriptorDatabase::candidates(std::span<const QueryDescriptor> query, size_t eligible) {
-  std::vector<size_t> out;
-  if (query.size() * eligible <= static_cast<size_t>(exhaustive_pairs_)) {
-    for (size_t i = 0; i < eligible; ++i) out.push_back(i);
-    return out;
-  }
+std::vector<size_t> DescriptorDatabase::candidates(std::span<const QueryDescriptor> query, size_t eligible,
+                                                   const Filter& may_match) {
+  const auto excluded = [&](size_t entry) { return may_match && !may_match(entries_[entry]); };
+  std::vector<size_t> out(eligible);
+  std::iota(out.begin(), out.end(), size_t{0});
+  std::erase_if(out, excluded);
+  if (query.size() * out.size() <= static_cast<size_t>(exhaustive_pairs_)) return out;
+  out.clear();
   // The tree is rebuilt when an eighth of the entries is outside it, or when it holds entries that are not
   // eligible.
   if (!tree_ || tree_->size() > eligible || eligible - tree_->size() > eligible / 8)
@@ -86,14 +89,15 @@ std::vector<size_t> DescriptorDatabase::candidates(std::span<const QueryDescript
   for (const QueryDescriptor& descriptor : query) nearest_ring_keys(descriptor.context, eligible, out);
   std::sort(out.begin(), out.end());
   out.erase(std::unique(out.begin(), out.end()), out.end());
+  std::erase_if(out, excluded);
   return out;
 }
 
 std::optional<DescriptorMatch> DescriptorDatabase::find(std::span<const QueryDescriptor> query,
-                                                        size_t eligible) {
+                                                        size_t eligible, const Filter& may_match) {
   std::optional<DescriptorMatch> found;
   std::optional<double> runner_up;
-  for (size_t entry : candidates(query, std::min(eligible, entries_.size()))) {
+  for (size_t entry : candidates(query, std::min(eligible, entries_.size()), may_match)) {
     DescriptorMatch match{entry, 0, scan_context_distance(query[0].context, entries_[entry].context), {}};
     for (size_t d = 1; d < query.size(); ++d) {
       const ShiftedDistance other = scan_context_distance(query[d].context, entries_[entry].context);

@@ -1,6 +1,7 @@
 // The stored Scan Contexts, any subset of the key scans in order, and the search for the most similar one.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -44,13 +45,18 @@ class DescriptorDatabase {
   /// How many entries are of key scans up to `last_key` made no later than `last_stamp`.
   size_t count_until(int last_key, Time last_stamp) const;
 
-  /// The nearest of the first `eligible` entries to any of the descriptors. Equal distances: the lower entry,
-  /// then the lower descriptor.
-  std::optional<DescriptorMatch> find(std::span<const QueryDescriptor> query, size_t eligible);
+  /// Which entries a search may find.
+  using Filter = std::function<bool(const Entry&)>;
+
+  /// The nearest to any of the descriptors among those of the first `eligible` entries that `may_match` (null:
+  /// all). Equal distances: the lower entry, then the lower descriptor.
+  std::optional<DescriptorMatch> find(std::span<const QueryDescriptor> query, size_t eligible,
+                                      const Filter& may_match = nullptr);
 
  private:
   class RingKeyTree;
-  std::vector<size_t> candidates(std::span<const QueryDescriptor> query, size_t eligible);
+  std::vector<size_t> candidates(std::span<const QueryDescriptor> query, size_t eligible,
+                                 const Filter& may_match);
   void nearest_ring_keys(const ScanContext& context, size_t eligible, std::vector<size_t>& out) const;
 
   using RingKey = decltype(ScanContext::ring_key);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <limits>
 #include <utility>
 
 #include "core/errors.h"
@@ -61,6 +62,11 @@ void IcpConfig::fields(Fields& f) {
   f("step_translation_m", step_translation_m, non_negative());
   f("step_rotation_rad", step_rotation_rad, between(0, 1));
   f("relative_mse_change", relative_mse_change, between(0, 1));
+}
+
+double VerificationConfig::allowed_gap_m(double way_m) const {
+  if (max_gap_m <= 0 && max_gap_share <= 0) return std::numeric_limits<double>::infinity();
+  return max_gap_m + max_gap_share * way_m;
 }
 
 void VerificationConfig::fields(Fields& f) {
@@ -124,6 +130,7 @@ void VsSlamLoopConfig::fields(Fields& f) {
   f("max_distance", max_distance, between(0, 2));
   f("exclude_recent_s", exclude_recent_s, non_negative());
   f("exclude_recent_scans", exclude_recent_scans, at_least(1));
+  f("search_reach_m", search_reach_m, non_negative());
   f("virtual_descriptors", virtual_descriptors);
   f("memory", memory);
   f("verification", verification);

@@ -60,6 +60,8 @@ struct VerificationConfig {
   /// 0 and 0: any.
   double max_gap_m = 0, max_gap_share = 0;
   double max_gap_rad = 0;  ///< likewise its rotation; 0: any
+  /// How far odometry can have drifted on this way; infinity if any gap is allowed.
+  double allowed_gap_m(double way_m) const;
   void fields(Fields& f);
 };
 
@@ -111,16 +113,19 @@ struct VsSlamLoopConfig {
   double max_distance = 0.3;  ///< of descriptors; the candidate's must be smaller
   double exclude_recent_s = 30.0;
   int exclude_recent_scans = 30;
+  /// Only places are searched from which odometry can have drifted to within this distance of the query (see
+  /// verification.max_gap_m): a look-alike across the building must not outbid the place itself. 0: all.
+  double search_reach_m = 5.0;
   VirtualDescriptorConfig virtual_descriptors;
   SelectiveMemoryConfig memory;
   /// ICP's fitness is a weak test in corridors, which fit each other: the scan must also overlap with the map,
-  /// and lie where odometry can have drifted to. Along a street it fits as well a metre further on: of fits alike,
-  /// the one that needs no drift.
+  /// and lie where odometry can have drifted to: 1 % of the way is what VIO alone is held to. Along a street it
+  /// fits as well a metre further on: of fits alike, the one that needs no drift.
   VerificationConfig verification{.icp = {},
                                   .min_overlap = 0.6,
                                   .prediction_ratio = 1.25,
                                   .max_gap_m = 1.0,
-                                  .max_gap_share = 0.03,
+                                  .max_gap_share = 0.01,
                                   .max_gap_rad = 0.35};
   double edge_variance = 0.5;  ///< rad^2 and m^2
   double cauchy_scale = 1.0;   ///< of the edge's robust kernel; 0: quadratic

@@ -23,20 +23,11 @@ bool prefers_prediction(const IcpResult& predicted, const IcpResult& other, doub
   return predicted.fitness_m2 <= ratio * other.fitness_m2 && ratio * predicted.overlap >= other.overlap;
 }
 
-/// Length of the odometry's way between two key scans.
-double way_m(const std::vector<KeyScan>& keys, int from, int to) {
-  double length_m = 0;
-  for (size_t i = static_cast<size_t>(from); i < static_cast<size_t>(to); ++i)
-    length_m += (keys[i + 1].T_odom_base.translation - keys[i].T_odom_base.translation).norm();
-  return length_m;
-}
-
 /// Whether odometry can have drifted as far as the loop says.
 bool consistent(const LoopRecord& record, double way_m, const VerificationConfig& config) {
   const SE3 gap = record.T_match_query_predicted.inverse() * record.T_match_query;
-  const bool near = (config.max_gap_m <= 0 && config.max_gap_share <= 0) ||
-                    gap.translation.norm() <= config.max_gap_m + config.max_gap_share * way_m;
-  return near && (config.max_gap_rad <= 0 || gap.angle() <= config.max_gap_rad);
+  return gap.translation.norm() <= config.allowed_gap_m(way_m) &&
+         (config.max_gap_rad <= 0 || gap.angle() <= config.max_gap_rad);
 }
 
 std::string verdict(const LoopRecord& record, double way_m, const VerificationConfig& config) {
@@ -72,7 +63,9 @@ void verify_loop(const std::vector<KeyScan>& keys, const SE3& T_base_lidar, cons
   record.inlier_ratio = icp.inlier_ratio;
   record.overlap = icp.overlap;
   record.T_match_query = icp.T_target_source;
-  record.why = verdict(record, way_m(keys, record.match, record.query), config);
+  const double way_m =
+      keys[static_cast<size_t>(record.query)].way_m - keys[static_cast<size_t>(record.match)].way_m;
+  record.why = verdict(record, way_m, config);
   record.accepted = record.why == "accepted";
 }
 

@@ -29,7 +29,10 @@ std::optional<LoopRecord> VsSlamDetector::detect(const std::vector<KeyScan>& key
   const size_t eligible =
       database_.count_until(query.id - config_.exclude_recent_scans,
                             query.stamp - Duration::from_seconds(config_.exclude_recent_s));
-  const std::optional<DescriptorMatch> match = database_.find(query_, eligible);
+  const std::optional<DescriptorMatch> match =
+      database_.find(query_, eligible, [&](const DescriptorDatabase::Entry& entry) {
+        return within_reach(query, keys[static_cast<size_t>(entry.key)]);
+      });
   if (!match) return std::nullopt;
   const QueryDescriptor& winner = query_[match->descriptor];
   LoopRecord record = loop_candidate(query, keys[static_cast<size_t>(database_.entries()[match->entry].key)]);
@@ -41,6 +44,13 @@ std::optional<LoopRecord> VsSlamDetector::detect(const std::vector<KeyScan>& key
   record.T_match_query = guess_from_descriptor(record.yaw_rad, record.virtual_offset_m, lidar_.T_base_lidar);
   if (record.descriptor_distance >= config_.max_distance) record.why = "distance";
   return record;
+}
+
+// Whether the query may have been made near the match, for all that odometry can have drifted since.
+bool VsSlamDetector::within_reach(const KeyScan& query, const KeyScan& match) const {
+  if (config_.search_reach_m <= 0) return true;
+  const double apart_m = (query.T_map_base.translation - match.T_map_base.translation).norm();
+  return apart_m <= config_.search_reach_m + config_.verification.allowed_gap_m(query.way_m - match.way_m);
 }
 
 void VsSlamDetector::weigh(LoopRecord& record) const {

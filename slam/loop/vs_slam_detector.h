@@ -22,6 +22,8 @@ class VsSlamDetector final : public LoopDetector {
   std::vector<int> possible_matches(const std::vector<KeyScan>& keys) const override;
 
  private:
+  bool within_reach(const KeyScan& query, const KeyScan& match) const;
+
   VsSlamLoopConfig config_;
   ScanContextConfig scan_context_;
   LidarCalibration lidar_;

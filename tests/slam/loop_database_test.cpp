@@ -48,6 +48,19 @@ TEST(DescriptorDatabase, OnlyEligibleEntriesAreCompared) {
   EXPECT_EQ(database.count_until(-1, at(100)), 0u);
 }
 
+TEST(DescriptorDatabase, FindsOnlyWhatMayMatch) {
+  DescriptorDatabase all_pairs(1000), ring_keys(0);
+  const QueryDescriptor query{context_at(1.2), 0, {0, 0}};
+  const auto odd = [](const DescriptorDatabase::Entry& entry) { return entry.key % 2 == 1; };
+  for (DescriptorDatabase* database : {&all_pairs, &ring_keys}) {
+    for (int key = 0; key < 20; ++key) database->add(key, at(key), context_at(0.1 * key));
+    const auto match = database->find({&query, 1}, 20, odd);
+    ASSERT_TRUE(match);
+    EXPECT_TRUE(match->entry == 11 || match->entry == 13) << match->entry;
+    EXPECT_FALSE(database->find({&query, 1}, 20, [](const DescriptorDatabase::Entry&) { return false; }));
+  }
+}
+
 TEST(DescriptorDatabase, TiesGoToTheLowerEntryThenTheLowerDescriptor) {
   DescriptorDatabase database(1000);
   for (int key = 0; key < 5; ++key) database.add(key, at(key), context_at(key == 0 ? 50 : 3));

@@ -39,6 +39,7 @@ inline Drive laps(int count, double drift_m_per_key, double aside_m = 0) {
     key.information = analyse_information(Vec6(300, 350, 400, 300, 350, 400).asDiagonal());
     key.T_map_base = SE3(Quat::Identity(), {drift_m_per_key * id, 0, 0}) * T_map_base;
     key.T_odom_base = key.T_map_base;
+    if (id > 0) key.way_m = drive.keys.back().way_m + 1;
     drive.keys.push_back(std::move(key));
     drive.truth.push_back(T_map_base);
   }

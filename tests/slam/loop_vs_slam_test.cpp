@@ -172,6 +172,7 @@ TEST(VsSlam, RefusesLoopsThatOdometryRulesOut) {
   }
   const auto reasons = [&](auto change) {
     LoopConfig config;
+    config.vs_slam.search_reach_m = 0;
     change(config.vs_slam.verification);
     LoopCloser closer(config, Method::vs_slam_no_st, kLidar, nullptr);
     return play(closer, drive).back().why;
@@ -179,6 +180,29 @@ TEST(VsSlam, RefusesLoopsThatOdometryRulesOut) {
   EXPECT_EQ(reasons([](VerificationConfig&) {}), "gap");
   EXPECT_EQ(reasons([](VerificationConfig& v) { v.max_gap_m = 45; }), "accepted");
   EXPECT_EQ(reasons([](VerificationConfig& v) { v.max_gap_m = v.max_gap_share = 0; }), "accepted");
+}
+
+// The second of three laps is in another room that looks the same; the third is driven as the second was, so what
+// it sees is more like the wrong room than like the first lap.
+TEST(VsSlam, ALookAlikeOutOfReachDoesNotHideThePlaceItself) {
+  Drive drive = laps(75, 0, 0.8);
+  for (size_t i = 25; i < 50; ++i)
+    for (SE3* T : {&drive.keys[i].T_map_base, &drive.keys[i].T_odom_base, &drive.truth[i]})
+      *T = planar(60, 0, 0) * *T;
+  const auto loops_of_third_lap = [&](double search_reach_m) {
+    LoopConfig config;
+    config.vs_slam.exclude_recent_s = 0;
+    config.vs_slam.exclude_recent_scans = 10;
+    config.vs_slam.search_reach_m = search_reach_m;
+    LoopCloser closer(config, Method::vs_slam_no_st, kLidar, nullptr);
+    std::vector<LoopRecord> records = play(closer, drive);
+    std::erase_if(records, [](const LoopRecord& r) { return r.query < 50; });
+    return records;
+  };
+  const auto all = loops_of_third_lap(0), near = loops_of_third_lap(5);
+  EXPECT_GT(true_loops(near, drive), 20);
+  EXPECT_LT(true_loops(all, drive), 15);
+  for (const LoopRecord& record : near) EXPECT_TRUE(record.match < 25 || record.match >= 50) << record.match;
 }
 
 }  // namespace
