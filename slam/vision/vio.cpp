@@ -57,6 +57,7 @@ struct VisualInertialOdometry::Impl {
   void decide_key(const NewestView& view);
   void preintegrate_again();
   bool healthy(const VioState& expected) const;
+  bool slow(Time stamp) const;
   void fail();
   std::optional<VioState> propagated(Time stamp) const;
   std::vector<StampedPose> dense_path(Time begin, Time end) const;
@@ -79,7 +80,8 @@ std::optional<VioState> VisualInertialOdometry::Impl::add(const VisualFrame& raw
     return tracking ? propagated(frame.stamp) : std::nullopt;
   if (!imu.at(frame.stamp)) return std::nullopt;
   last_frame = frame.stamp;
-  const std::optional<RestMeans> means = rest.update(frame, imu);
+  std::optional<RestMeans> means = rest.update(frame, imu);
+  if (means && tracking && !slow(frame.stamp)) means.reset();
   if (tracking && !track(frame, means)) fail();
   if (!tracking) {
     if (auto started = start(frame, means)) {
@@ -91,6 +93,11 @@ std::optional<VioState> VisualInertialOdometry::Impl::add(const VisualFrame& raw
   }
   if (!tracking) return std::nullopt;
   return window.newest().state;
+}
+
+bool VisualInertialOdometry::Impl::slow(Time stamp) const {
+  const std::optional<VioState> state = propagated(stamp);
+  return state && state->v_vio_mps.norm() < model.config.rest.speed_mps;
 }
 
 std::optional<VioWindow> VisualInertialOdometry::Impl::start(const VisualFrame& frame,

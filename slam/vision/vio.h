@@ -24,6 +24,9 @@ struct VioRestConfig {
   double gyro_change_radps = 0.005;  ///< of the mean over a quarter of the window
   double accel_change_mps2 = 0.02;   ///< likewise
   double flow_px = 1.5;              ///< median displacement of features, at focal length 460
+  /// While tracking it must also have slowed down to this: what lies far ahead does not flow either, and at
+  /// constant speed an IMU is as quiet.
+  double speed_mps = 0.05;
   void fields(Fields& f);
 };
 

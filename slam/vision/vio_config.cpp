@@ -9,6 +9,7 @@ void VioRestConfig::fields(Fields& f) {
   f("gyro_change_radps", gyro_change_radps, positive());
   f("accel_change_mps2", accel_change_mps2, positive());
   f("flow_px", flow_px, positive());
+  f("speed_mps", speed_mps, positive());
 }
 
 void VioStartConfig::fields(Fields& f) {

@@ -80,19 +80,27 @@ MotionPath VioPrior::path(Time begin, Time end) const {
 }
 
 void VioPrior::correct(const OdometryFix& fix) {
-  if (fallback_.fixes().last())
-    T_start_base_ = T_start_base_ * path(fallback_.fixes().last()->stamp, fix.stamp).end_pose();
+  Vec3 unseen_velocity_base_mps = Vec3::Zero();
+  if (const std::optional<OdometryFix>& last = fallback_.fixes().last(); last && fix.stamp > last->stamp) {
+    T_start_base_ = T_start_base_ * path(last->stamp, fix.stamp).end_pose();
+    unseen_velocity_base_mps = fallback_.path(last->stamp, fix.stamp).end_pose().translation /
+                               seconds_between(last->stamp, fix.stamp);
+  }
   fallback_.correct(fix);
-  if (config_.lidar_aid) vio_.add(aid(fix));
+  if (config_.lidar_aid) vio_.add(aid(fix, unseen_velocity_base_mps));
   imu_.forget_before(last_image_ ? std::min(*last_image_, fix.stamp) : fix.stamp);
 }
 
-// Pose, velocity and bias that the LiDAR side vouches for.
-VioAid VioPrior::aid(const OdometryFix& fix) const {
+// Pose, velocity and bias that the LiDAR side vouches for. Where it was blind it has only followed this prior:
+// there the velocity is that of the fallback, lest a restart begin with what made it necessary.
+VioAid VioPrior::aid(const OdometryFix& fix, const Vec3& unseen_velocity_base_mps) const {
   VioAid aid;
   aid.stamp = fix.stamp;
   aid.T_odom_imu = fix.T_odom_base * rig_.imu.T_base_imu;
-  const Vec3 omega_base = fallback_.fixes().twist().head<3>(), v_base = fallback_.fixes().twist().tail<3>();
+  const Vec3 omega_base = fallback_.fixes().twist().head<3>();
+  const Vec3 v_base =
+      unseen_velocity_base_mps +
+      fix.observed_translation * (fallback_.fixes().twist().tail<3>() - unseen_velocity_base_mps);
   aid.v_odom_mps = fix.T_odom_base.rotation * (v_base + omega_base.cross(rig_.imu.T_base_imu.translation));
   aid.bias.gyro_radps = fallback_.gyro_bias_radps();
   if (vio_.status() == VioStatus::tracking) aid.bias.accel_mps2 = vio_.state().bias.accel_mps2;

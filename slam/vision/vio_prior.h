@@ -27,7 +27,7 @@ class VioPrior : public MotionPrior {
   std::optional<MotionPath> visual_path(Time begin, Time end) const;
   std::optional<Quat> camera_turn(Time from, Time to) const;
   void fill_depth(Time stamp, VisualFrame& frame) const;  // by the clock of the IMU
-  VioAid aid(const OdometryFix& fix) const;
+  VioAid aid(const OdometryFix& fix, const Vec3& unseen_velocity_base_mps) const;
 
   VisionConfig config_;
   RigCalibration rig_;

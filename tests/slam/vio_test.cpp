@@ -66,6 +66,34 @@ TEST(Vio, StandsStillAtRest) {
   EXPECT_LT(at(24.9).v_vio_mps.norm(), 1e-3);
 }
 
+// Lamps at the far end of a corridor are all that is seen: they do not flow, and at constant speed the IMU is quiet.
+TEST(Vio, WhatDoesNotFlowFarAheadIsNoRest) {
+  const Drive drive(from_rest(8));
+  const auto q_world_camera = [&](double t) {
+    return (drive.T_world_base(t) * rig().camera.T_base_camera).rotation;
+  };
+  RideOptions options;
+  options.noise = sensor_noise(9);
+  options.depth_share = 0.6;
+  options.keep_frame = [&](VisualFrame& frame) {
+    const double t = frame.stamp.seconds();
+    if (t < 5) return true;
+    frame.features.clear();
+    for (int k = 0; k < 30; ++k) {
+      const Vec3 far_ahead(0.04 * (k % 6) - 0.1, 0.04 * (k / 6) - 0.08, 1);
+      VisualFeature feature;
+      feature.id = 1'000'000 + k;
+      feature.ray_camera = (q_world_camera(t).conjugate() * (q_world_camera(5) * far_ahead)).hnormalized();
+      frame.features.push_back(feature);
+    }
+    return true;
+  };
+  const Ride ridden = ride(drive, options);
+  EXPECT_EQ(ridden.restarts, 0);
+  const VioState& state = *ridden.steps.back().state;
+  EXPECT_NEAR(state.v_vio_mps.norm(), true_state(drive, rig(), state.stamp, {}).v_vio_mps.norm(), 0.1);
+}
+
 TEST(Vio, StartsFromMotion) {
   Drive::Options moving = from_rest(9);
   moving.warm_s = 6;
