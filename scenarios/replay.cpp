@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/errors.h"
+#include "scenarios/datasets/kitti_truth.h"
 #include "scenarios/evaluation/csv.h"
 #include "scenarios/evaluation/score.h"
 #include "scenarios/evaluation/trajectory_file.h"
@@ -123,14 +124,14 @@ ReplayedRecording::ReplayedRecording(const ReplayRequest& request,
                            .images = !sets_prior(request.overrides) || config_.slam.prior == PriorKind::vio,
                            .salvage = request.salvage,
                            .undistorted = request.undistorted};
-  if (!request.truth.empty() && fs::exists(request.truth)) {
-    truth_world_base_ = read_trajectory(request.truth);
-    truth_name_ = fs::path(request.truth).filename().string();
+  const bool truth_file = !request.truth.empty() && fs::exists(request.truth);
+  if (truth_file) {
     options.topics["truth"] = "none";
   } else if (!request.truth.empty()) {
     options.topics["truth"] = truth_name_ = request.truth;
   }
   recording_ = open_recording(path_, sheet_, options);
+  if (truth_file) read_truth(request.truth);
   if (request.truth.empty() && !request.topics.contains("truth")) find_truth_beside();
   samples_ = std::make_unique<SampleOrder>(*recording_);
   choose_prior(sets_prior(request.overrides));
@@ -140,13 +141,26 @@ ReplayedRecording::ReplayedRecording(const ReplayRequest& request,
 
 // Of a dataset whose format has no topic for it.
 void ReplayedRecording::find_truth_beside() {
-  const fs::path file = path_ / "truth.tum";
+  const fs::path file = path_ / (is_kitti_folder() ? "poses.txt" : "truth.tum");
   const std::vector<RecordedStream>& streams = recording_->facts().streams;
   if (!fs::is_directory(path_) || !fs::exists(file) ||
       std::any_of(streams.begin(), streams.end(),
                   [](const RecordedStream& s) { return s.used_as == "truth"; }))
     return;
-  truth_world_base_ = read_trajectory(file);
+  read_truth(file);
+}
+
+bool ReplayedRecording::is_kitti_folder() const {
+  const std::vector<RecordedStream>& streams = recording_->facts().streams;
+  return std::any_of(streams.begin(), streams.end(),
+                     [](const RecordedStream& s) { return s.type == "KITTI"; });
+}
+
+// A trajectory of the base; but KITTI's poses of a KITTI folder are those of its camera 0.
+void ReplayedRecording::read_truth(const fs::path& file) {
+  truth_world_base_ = is_kitti_folder() && is_kitti(file)
+                          ? read_kitti_truth(file, path_, sheet_.calibration.lidar.T_base_lidar)
+                          : read_trajectory(file);
   truth_name_ = file.filename().string();
 }
 

@@ -57,6 +57,8 @@ class ReplayedRecording final : public MeasurementSource {
 
  private:
   void find_truth_beside();
+  bool is_kitti_folder() const;
+  void read_truth(const std::filesystem::path& file);
   void choose_prior(bool asked_for);
   void read_chunk(Chunk& chunk);
   void take_truth();

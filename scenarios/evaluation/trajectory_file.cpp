@@ -105,15 +105,6 @@ SE3 parse_kitti_pose(const Lines& lines) {
   return SE3(Quat(R), t);
 }
 
-PoseTrajectory parse_kitti(std::string_view text, const std::string& name) {
-  PoseTrajectory trajectory;
-  for (Lines lines(text, name); lines.next();)
-    trajectory.push_back(
-        {Time{static_cast<int64_t>(trajectory.size()) * 100'000'000}, parse_kitti_pose(lines)});
-  if (trajectory.empty()) throw InputError(fmt::format("{}: no pose", name));
-  return trajectory;
-}
-
 void set_stamps(PoseTrajectory& trajectory, std::string_view text, const std::string& name) {
   PoseTrajectory stamped;
   for (Lines lines(text, name); lines.next();) {
@@ -171,6 +162,15 @@ void write_tum(const std::filesystem::path& path, std::span<const StampedPose> t
   write_file(path, format_tum(trajectory));
 }
 
+PoseTrajectory parse_kitti(std::string_view text, const std::string& name) {
+  PoseTrajectory trajectory;
+  for (Lines lines(text, name); lines.next();)
+    trajectory.push_back(
+        {Time{static_cast<int64_t>(trajectory.size()) * 100'000'000}, parse_kitti_pose(lines)});
+  if (trajectory.empty()) throw InputError(fmt::format("{}: no pose", name));
+  return trajectory;
+}
+
 PoseTrajectory read_kitti(const std::filesystem::path& path, const std::filesystem::path& times) {
   PoseTrajectory trajectory = parse_kitti(read_file(path), path.string());
   if (!times.empty()) set_stamps(trajectory, read_file(times), times.string());
@@ -192,15 +192,16 @@ void write_kitti_times(const std::filesystem::path& path, std::span<const Stampe
   write_file(path, text);
 }
 
+bool is_kitti(const std::filesystem::path& path) {
+  const std::string text = read_file(path);
+  Lines lines(text, path.string());
+  return lines.next() && lines.words().size() == 12;
+}
+
 PoseTrajectory read_trajectory(const std::filesystem::path& path) {
-  const std::string text = read_file(path), name = path.string();
-  Lines lines(text, name);
-  if (!lines.next()) throw InputError(fmt::format("{}: no pose", name));
-  if (lines.words().size() != 12) return parse_tum(text, name);
-  PoseTrajectory trajectory = parse_kitti(text, name);
+  if (!is_kitti(path)) return read_tum(path);
   const std::filesystem::path times = path.parent_path() / "times.txt";
-  if (std::filesystem::exists(times)) set_stamps(trajectory, read_file(times), times.string());
-  return trajectory;
+  return read_kitti(path, std::filesystem::exists(times) ? times : std::filesystem::path());
 }
 
 }  // namespace vsslam

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/se3.h"
@@ -24,6 +25,9 @@ void write_tum(const std::filesystem::path& path, std::span<const StampedPose> t
 /// KITTI odometry: the upper 3 x 4 of each pose, twelve numbers a line. Stamps (s) come from `times`, one a
 /// line, of the same length; without it pose n has the stamp n * 0.1 s.
 PoseTrajectory read_kitti(const std::filesystem::path& path, const std::filesystem::path& times = {});
+PoseTrajectory parse_kitti(std::string_view text, const std::string& name);
+/// Whether the first line that is no comment has twelve columns.
+bool is_kitti(const std::filesystem::path& path);
 void write_kitti(const std::filesystem::path& path, std::span<const StampedPose> trajectory);
 void write_kitti_times(const std::filesystem::path& path, std::span<const StampedPose> trajectory);
 

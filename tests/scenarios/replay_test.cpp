@@ -309,8 +309,8 @@ TEST(Replay, ReadsFoldersOfScansWithEurocsImu) {
   EXPECT_TRUE(read_file(result("euroc") / "map.ply") == read_file(result("no_wheels") / "map.ply"));
 }
 
-TEST(Replay, ReadsKittiFolders) {
-  const fs::path folder = scratch_folder() / "kitti";
+fs::path kitti_folder(const std::string& name) {
+  const fs::path folder = scratch_folder() / name;
   std::string times;
   int scans = 0;
   for (const Message& message : recorded_drive().messages)
@@ -321,14 +321,49 @@ TEST(Replay, ReadsKittiFolders) {
     }
   write_file(folder / "times.txt", times);
   write_file(folder / "rig.yaml", save_config(recorded_drive().sheet));
-  ASSERT_EQ(replay(folder, {"--set", "slam.prior=constant_velocity"}).code, 0);
+  return folder;
+}
+
+TEST(Replay, ReadsKittiFolders) {
+  ASSERT_EQ(replay(kitti_folder("kitti"), {"--set", "slam.prior=constant_velocity"}).code, 0);
   const PoseTrajectory estimate = read_tum(result("kitti") / "estimate.tum");
-  ASSERT_EQ(estimate.size(), static_cast<size_t>(scans));
+  ASSERT_EQ(estimate.size(), recorded_drive().truth_world_base.size());
   EXPECT_NEAR((estimate.back().pose.translation - estimate.front().pose.translation).norm(),
               (recorded_drive().truth_world_base.back().pose.translation -
                recorded_drive().truth_world_base.front().pose.translation)
                   .norm(),
               0.03);
+}
+
+// Poses of a camera that looks askew; the truth that is scored is the base's.
+TEST(Replay, AKittiFolderIsScoredByItsPosesOfTheCamera) {
+  const fs::path folder = kitti_folder("kitti_truth");
+  const std::vector<StampedPose>& truth_world_base = recorded_drive().truth_world_base;
+  const SE3 T_base_camera = SE3::from_rpy({0.2, -0.4, 0.7}, {0.5, -0.3, 0.4});
+  const SE3 T_first_world = (truth_world_base.front().pose * T_base_camera).inverse();
+  const auto row = [](const SE3& T) {
+    const Eigen::Matrix4d m = T.matrix4();
+    std::string text;
+    for (int i = 0; i < 12; ++i) text += fmt::format("{} ", m(i / 4, i % 4));
+    return text;
+  };
+  std::string poses;
+  for (const StampedPose& truth : truth_world_base)
+    poses += row(T_first_world * truth.pose * T_base_camera) + '\n';
+  write_file(folder / "poses.txt", poses);
+  const std::string mount =
+      row(T_base_camera.inverse() * recorded_drive().sheet.calibration.lidar.T_base_lidar);
+  write_file(folder / "calib.txt", "P0: 1 0 0 0 0 1 0 0 0 0 1 0\nTr: " + mount + '\n');
+  ASSERT_EQ(replay(folder).code, 0);
+  EXPECT_LT(json_of(result("kitti_truth") / "metrics.json")["ate_rmse_m"], 0.05);
+  const PoseTrajectory scored = read_tum(result("kitti_truth") / "truth.tum");
+  ASSERT_EQ(scored.size(), truth_world_base.size());
+  const SE3 moved = scored.front().pose.inverse() * scored.back().pose;
+  const SE3 expected = truth_world_base.front().pose.inverse() * truth_world_base.back().pose;
+  EXPECT_LT((moved.inverse() * expected).log().norm(), 1e-6);
+
+  write_file(folder / "calib.txt", "P0: 1 0 0 0 0 1 0 0 0 0 1 0\n");
+  EXPECT_THAT(replay(folder).err, HasSubstr("calib.txt: expected a line `Tr:`"));
 }
 
 TEST(Replay, ErrorsSayWhatToDo) {
