@@ -47,5 +47,6 @@ echo "== datasets"
   --out data/quick_room --quiet
 node check_dataset.mjs data/quick_room data
 /usr/bin/python3 check_bag.py data/quick_room/*.bag
+"$build/tests/opencv_images" data/quick_room/*.mcap data/quick_room
 rm -rf data/quick_room
 echo "external: all readers agree"
