@@ -5,6 +5,7 @@
 #include <zlib.h>
 
 #include <utility>
+#include <vector>
 
 #include "core/errors.h"
 
@@ -85,22 +86,6 @@ std::string encode_png_grey16(int width_px, int height_px, std::span<const uint1
     rows.push_back(static_cast<uint8_t>(value));
   }
   return encode(width_px, height_px, 16, rows);
-}
-
-GreyImage decode_png_grey8(std::string_view bytes, std::string_view place) {
-  png_image image{};
-  image.version = PNG_IMAGE_VERSION;
-  if (!png_image_begin_read_from_memory(&image, bytes.data(), bytes.size()))
-    throw InputError(fmt::format("{}: not a PNG image: {}", place, image.message));
-  GreyImage decoded{static_cast<int>(image.width), static_cast<int>(image.height)};
-  const bool grey = image.format == static_cast<png_uint_32>(PNG_FORMAT_GRAY);
-  if (grey) decoded.grey.resize(PNG_IMAGE_SIZE(image));
-  if (!grey || !png_image_finish_read(&image, nullptr, decoded.grey.data(), 0, nullptr)) {
-    const std::string why = grey ? image.message : "expected 8 bits of grey";
-    png_image_free(&image);
-    throw InputError(fmt::format("{}: {}", place, why));
-  }
-  return decoded;
 }
 
 }  // namespace vsslam

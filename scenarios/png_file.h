@@ -4,8 +4,6 @@
 #include <cstdint>
 #include <span>
 #include <string>
-#include <string_view>
-#include <vector>
 
 namespace vsslam {
 
@@ -14,12 +12,5 @@ std::string encode_png_grey8(int width_px, int height_px, std::span<const uint8_
 
 /// The same with 16 bits: distances and the like.
 std::string encode_png_grey16(int width_px, int height_px, std::span<const uint16_t> grey);
-
-struct GreyImage {
-  int width_px = 0, height_px = 0;
-  std::vector<uint8_t> grey{};  ///< row-major
-};
-/// Of a grey PNG of 8 bits. Throws InputError that starts with `place`.
-GreyImage decode_png_grey8(std::string_view bytes, std::string_view place);
 
 }  // namespace vsslam

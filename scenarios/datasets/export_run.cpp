@@ -10,6 +10,7 @@
 
 #include "core/files.h"
 #include "core/ordered_parallel.h"
+#include "scenarios/datasets/image_files.h"
 #include "scenarios/datasets/scan_columns.h"
 #include "scenarios/driving.h"
 #include "scenarios/pipeline.h"
@@ -78,9 +79,11 @@ class Acquisition {
       if (file.empty()) file = sink->image_file(stamp);
     }
     if (file.empty()) return std::nullopt;
-    const GreyImage image = decode_png_grey8(read_file(file), file.string());
-    const uint64_t sum = std::accumulate(image.grey.begin(), image.grey.end(), uint64_t{0});
-    return static_cast<double>(sum) / static_cast<double>(image.grey.size());
+    const std::string bytes = read_file(file);
+    const std::vector<uint8_t> grey =
+        read_image_file({reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()}, file.string()).data;
+    const uint64_t sum = std::accumulate(grey.begin(), grey.end(), uint64_t{0});
+    return static_cast<double>(sum) / static_cast<double>(grey.size());
   }
 
   DatasetSample sample(Measurement&& measurement, const Trajectory& trajectory) {

@@ -42,19 +42,9 @@ TEST(PngFile, DecodesToTheSameImage) {
   }
 }
 
-TEST(PngFile, ReadsWhatItWrote) {
-  const std::vector<uint8_t> grey = {0, 1, 2, 253, 254, 255};
-  const GreyImage image = decode_png_grey8(encode_png_grey8(3, 2, grey), "a.png");
-  EXPECT_EQ(image.width_px, 3);
-  EXPECT_EQ(image.height_px, 2);
-  EXPECT_EQ(image.grey, grey);
-  EXPECT_THROW(decode_png_grey8("no image", "a.png"), InputError);
-}
-
 TEST(PngFile, SixteenBitsKeepTheirOrder) {
   const std::vector<uint16_t> depth_mm = {0, 1, 256, 65535};
   const std::string bytes = encode_png_grey16(2, 2, depth_mm);
-  EXPECT_THROW(decode_png_grey8(bytes, "depth.png"), InputError);
   png_image image{};
   image.version = PNG_IMAGE_VERSION;
   ASSERT_TRUE(png_image_begin_read_from_memory(&image, bytes.data(), bytes.size()));
