@@ -99,7 +99,7 @@ OdometryScan Odometry::Impl::add(const LidarScan& scan) {
 SE3 Odometry::Impl::start_pose() {
   const RestAlignment rest = align_at_rest(imu_before_start.samples(), rig.imu, config.inertial);
   const InitialState state{SE3(rest.q_odom_base, Vec3::Zero()), rest.gyro_bias_radps,
-                           rest.gyro_bias_sigma_radps, rest.at_rest};
+                           rest.gyro_bias_sigma_radps, rest.at_rest, rest.accel_bias_mps2};
   prior->start(state);
   imu_before_start.clear();
   return state.T_odom_base;

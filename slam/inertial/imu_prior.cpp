@@ -12,6 +12,7 @@ ImuPrior::ImuPrior(const InertialConfig& config, const RigCalibration& rig)
 
 void ImuPrior::start(const InitialState& state) {
   gyro_bias_.start(state.gyro_bias_radps, state.gyro_bias_sigma_radps);
+  accel_bias_mps2_ = state.accel_bias_mps2;
   state_.T_odom_imu = state.T_odom_base * imu_calibration_.T_base_imu;
   velocity_variance_ = state.at_rest ? 1e-6 : 1.0;
 }
@@ -20,7 +21,7 @@ bool ImuPrior::predict(Time begin, Time end, State& state, MotionPath* path) con
   const State start = state;
   const Vec3 gravity_odom(0, 0, -imu_calibration_.gravity_mps2);
   const SE3& T_base_imu = imu_calibration_.T_base_imu;
-  ImuPreintegration motion(imu_calibration_, {gyro_bias_.bias_radps(), Vec3::Zero()});
+  ImuPreintegration motion(imu_calibration_, {gyro_bias_.bias_radps(), accel_bias_mps2_});
   auto before = imu_.at(begin);
   if (!before) return false;
   std::vector<Time> stamps;

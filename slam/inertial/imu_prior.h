@@ -32,6 +32,7 @@ class ImuPrior : public MotionPrior {
   ImuCalibration imu_calibration_;
   ImuTrack imu_;
   GyroBias gyro_bias_;
+  Vec3 accel_bias_mps2_ = Vec3::Zero();  // as at the start
   FixHistory fixes_;
   State state_;  // at the last fix
   double velocity_variance_ = 1.0;

@@ -44,6 +44,7 @@ struct InitialState {
   Vec3 gyro_bias_radps = Vec3::Zero();  ///< IMU frame
   double gyro_bias_sigma_radps = 0.01;
   bool at_rest = false;
+  Vec3 accel_bias_mps2 = Vec3::Zero();  ///< IMU frame
 };
 
 /// vio: camera and IMU, wheel_imu while they restart; wheel_imu: gyroscope and wheels; imu: preintegration; wheel: wheels alone; constant_velocity: the LiDAR

@@ -50,6 +50,7 @@ RestAlignment align_at_rest(const std::deque<ImuSample>& samples, const ImuCalib
     result.gyro_bias_radps = spread.gyro_mean;
     const double sample_sigma = imu.gyro_noise_radps_rthz * std::sqrt(imu.rate_hz);
     result.gyro_bias_sigma_radps = sample_sigma / std::sqrt(static_cast<double>(samples.size()));
+    result.accel_bias_mps2 = spread.accel_mean - imu.gravity_mps2 * spread.accel_mean.normalized();
   }
   const auto& q_earth_imu = samples.front().q_earth_imu;
   if (!result.at_rest && q_earth_imu)

@@ -1,4 +1,4 @@
-// Which way is up, and the gyroscope's bias, from the samples before the first scan.
+// Which way is up, and the biases, from the samples before the first scan.
 #pragma once
 
 #include <deque>
@@ -14,6 +14,8 @@ struct RestAlignment {
   Vec3 gyro_bias_radps = Vec3::Zero();  ///< IMU frame; zero unless at rest
   double gyro_bias_sigma_radps = 0.01;
   bool at_rest = false;
+  /// IMU frame; zero unless at rest. What of it is level cannot be told from a tilt and is counted as such.
+  Vec3 accel_bias_mps2 = Vec3::Zero();
 };
 
 /// At rest the mean specific force points up. In motion the device's own orientation is used if there is one,

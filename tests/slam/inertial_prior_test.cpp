@@ -90,6 +90,24 @@ TEST(RestAlignment, FindsUpAndTheGyroscopesBias) {
             4 * std::sqrt(3.0) * rest.gyro_bias_sigma_radps);
 }
 
+// The first seconds, before a second key scan, are the prior's alone along directions that the map does not show yet.
+TEST(RestAlignment, AnAccelerometersBiasDoesNotLiftARobotAtRest) {
+  RigCalibration calibration = rig();
+  const Vec3 bias_mps2(0.03, -0.02, 0.04);
+  std::deque<ImuSample> samples;
+  for (int64_t t = 0; t <= 3000; t += 10)
+    samples.push_back(
+        {ms(t), Vec3::Zero(), Vec3(0, 0, calibration.imu.gravity_mps2) + bias_mps2, std::nullopt});
+  const std::deque<ImuSample> first(samples.begin(), samples.begin() + 11);
+  const RestAlignment rest = align_at_rest(first, calibration.imu, {});
+  ASSERT_TRUE(rest.at_rest);
+  const auto prior = make_motion_prior(PriorKind::imu, {}, calibration);
+  prior->start({SE3(rest.q_odom_base, Vec3::Zero()), rest.gyro_bias_radps, rest.gyro_bias_sigma_radps, true,
+                rest.accel_bias_mps2});
+  for (const ImuSample& sample : samples) prior->add(sample);
+  EXPECT_LT(prior->path(ms(0), ms(3000)).end_pose().translation.norm(), 1e-9);
+}
+
 TEST(RestAlignment, UsesTheDevicesOrientationWhenMoving) {
   const RigCalibration calibration = rig();
   std::deque<ImuSample> samples;
