@@ -70,7 +70,7 @@ TEST(Beam, AWallIsFiveMetresAway) {
 TEST(Beam, WhatIsTooNearOrBehindOrAsideIsNotHit) {
   const World world = tiled_wall(1, 2);
   const TriangleTree tree{PlacedTriangles(world)};
-  const RayTile& tile = narrow_view(400).tiles[5];
+  const RayTile tile = narrow_view(400).tiles[5];
   const auto hit = [&](const Vec3f& origin, const Vec3& rpy) {
     BeamHits hits;
     EXPECT_TRUE(trace(tree, beam_of(tile, origin, turned(rpy)), {}, kNear_m, hits));
@@ -154,7 +154,7 @@ TEST(Beam, GivesUpWhereTrianglesAreSmallerThanPixels) {
   const World world = tiled_wall(300);
   const TriangleTree tree{PlacedTriangles(world)};
   BeamHits hits;
-  const RayTile& tile = narrow_view(16).tiles[5];
+  const RayTile tile = narrow_view(16).tiles[5];
   EXPECT_FALSE(trace(tree, beam_of(tile, Vec3f::Zero(), Eigen::Matrix3f::Identity()), {}, kNear_m, hits));
 }
 

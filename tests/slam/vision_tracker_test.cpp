@@ -233,7 +233,7 @@ TEST(FeatureTracker, RejectsWhatMovesByItself) {
   const auto image = [&](int k) {
     CameraFrame frame = render(background, camera, drive_pose(k), frame_time(k));
     const CameraFrame moving =
-        render(patch, camera, before_plane({}, {0.1 * k, -0.25 * k, 0}), frame_time(k));
+        render(patch, camera, before_plane(Vec3::Zero(), {0.1 * k, -0.25 * k, 0}), frame_time(k));
     for (int y = 60; y < 160; ++y)
       for (int x = 100; x < 200; ++x) {
         const auto i = static_cast<size_t>(y * camera.width_px + x);
