@@ -105,6 +105,11 @@ SE3 parse_kitti_pose(const Lines& lines) {
   return SE3(Quat(R), t);
 }
 
+bool has_kitti_columns(std::string_view text, const std::string& name) {
+  Lines lines(text, name);
+  return lines.next() && lines.words().size() == 12;
+}
+
 void set_stamps(PoseTrajectory& trajectory, std::string_view text, const std::string& name) {
   PoseTrajectory stamped;
   for (Lines lines(text, name); lines.next();) {
@@ -193,15 +198,16 @@ void write_kitti_times(const std::filesystem::path& path, std::span<const Stampe
 }
 
 bool is_kitti(const std::filesystem::path& path) {
-  const std::string text = read_file(path);
-  Lines lines(text, path.string());
-  return lines.next() && lines.words().size() == 12;
+  return has_kitti_columns(read_file(path), path.string());
 }
 
 PoseTrajectory read_trajectory(const std::filesystem::path& path) {
-  if (!is_kitti(path)) return read_tum(path);
+  const std::string text = read_file(path), name = path.string();  // once: it may be a pipe
+  if (!has_kitti_columns(text, name)) return parse_tum(text, name);
+  PoseTrajectory trajectory = parse_kitti(text, name);
   const std::filesystem::path times = path.parent_path() / "times.txt";
-  return read_kitti(path, std::filesystem::exists(times) ? times : std::filesystem::path());
+  if (std::filesystem::exists(times)) set_stamps(trajectory, read_file(times), times.string());
+  return trajectory;
 }
 
 }  // namespace vsslam

@@ -95,6 +95,22 @@ TEST(Kitti, RoundTripsWithTimesBesideIt) {
   EXPECT_EQ(read_kitti(file("kitti/poses.txt"))[3].stamp.ns, 300'000'000);
 }
 
+// ./vsslam evaluate <(...) truth.tum: what comes through a pipe can be read once.
+TEST(Trajectory, ComesThroughAPipeToo) {
+  const std::string tum = "1 0 0 0 0 0 0 1\n2 3 0 0 0 0 0 1\n", kitti = "1 0 0 7 0 1 0 0 0 0 1 0\n";
+  const auto through_a_pipe = [](const std::string& text) {
+    int ends[2];
+    EXPECT_EQ(::pipe(ends), 0);
+    EXPECT_EQ(::write(ends[1], text.data(), text.size()), static_cast<ssize_t>(text.size()));
+    ::close(ends[1]);
+    PoseTrajectory trajectory = read_trajectory(fmt::format("/dev/fd/{}", ends[0]));
+    ::close(ends[0]);
+    return trajectory;
+  };
+  EXPECT_EQ(through_a_pipe(tum).back().pose.translation.x(), 3);
+  EXPECT_EQ(through_a_pipe(kitti).back().pose.translation.x(), 7);
+}
+
 TEST(Kitti, ErrorsHaveAPlace) {
   const std::string identity = "1 0 0 0 0 1 0 0 0 0 1 0\n";
   const auto error = [&](const std::string& poses, const std::string& times) {
