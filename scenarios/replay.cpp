@@ -147,6 +147,10 @@ void ReplayedRecording::find_truth_beside() {
       std::any_of(streams.begin(), streams.end(),
                   [](const RecordedStream& s) { return s.used_as == "truth"; }))
     return;
+  if (is_kitti_folder() && !fs::exists(path_ / "calib.txt")) {
+    add_note("truth: poses.txt is not used: without calib.txt it is not known where camera 0 sits");
+    return;
+  }
   read_truth(file);
 }
 

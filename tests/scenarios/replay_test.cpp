@@ -325,8 +325,8 @@ fs::path kitti_folder(const std::string& name) {
 }
 
 TEST(Replay, ReadsKittiFolders) {
-  ASSERT_EQ(replay(kitti_folder("kitti"), {"--set", "slam.prior=constant_velocity"}).code, 0);
-  const PoseTrajectory estimate = read_tum(result("kitti") / "estimate.tum");
+  ASSERT_EQ(replay(kitti_folder("kitti_scans"), {"--set", "slam.prior=constant_velocity"}).code, 0);
+  const PoseTrajectory estimate = read_tum(result("kitti_scans") / "estimate.tum");
   ASSERT_EQ(estimate.size(), recorded_drive().truth_world_base.size());
   EXPECT_NEAR((estimate.back().pose.translation - estimate.front().pose.translation).norm(),
               (recorded_drive().truth_world_base.back().pose.translation -
@@ -351,6 +351,9 @@ TEST(Replay, AKittiFolderIsScoredByItsPosesOfTheCamera) {
   for (const StampedPose& truth : truth_world_base)
     poses += row(T_first_world * truth.pose * T_base_camera) + '\n';
   write_file(folder / "poses.txt", poses);
+  const Outcome unscored = replay(folder);
+  EXPECT_EQ(unscored.code, 0);
+  EXPECT_THAT(unscored.err, HasSubstr("poses.txt is not used"));
   const std::string mount =
       row(T_base_camera.inverse() * recorded_drive().sheet.calibration.lidar.T_base_lidar);
   write_file(folder / "calib.txt", "P0: 1 0 0 0 0 1 0 0 0 0 1 0\nTr: " + mount + '\n');
