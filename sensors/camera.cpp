@@ -155,13 +155,12 @@ int Camera::blur_views(const Shot& shot, Workshop& workshop) const {
 void Camera::gather_light(const Shot& shot, Workshop& workshop) const {
   std::vector<float>& light = workshop.luminance;
   workshop.view_is_middle = false;
-  light.assign(centre_rays_.direction_camera.size(), 0.0f);
   if (const double share = transmission(shot.stamp); share < 1) {
     shot.source(shot.T_world_camera(0.5), coarse_rays_, workshop.coarse);
     const std::vector<float>& outside = workshop.coarse.luminance;
     const double mean =
         std::accumulate(outside.begin(), outside.end(), 0.0) / static_cast<double>(outside.size());
-    std::fill(light.begin(), light.end(), static_cast<float>(share * mean));
+    light.assign(centre_rays_.direction_camera.size(), static_cast<float>(share * mean));
     return;
   }
   const int views = std::max(blur_views(shot, workshop), config_.samples_per_pixel);
@@ -170,9 +169,13 @@ void Camera::gather_light(const Shot& shot, Workshop& workshop) const {
     const ViewRays& rays = sample_rays_.empty() ? centre_rays_ : sample_rays_[sample];
     const double share = config_.motion_blur ? (k + 0.5) / views : 0.5;
     shot.source(shot.T_world_camera(share), rays, workshop.view);
-    for (size_t i = 0; i < light.size(); ++i) light[i] += workshop.view.luminance[i];
+    if (k == 0)
+      light = workshop.view.luminance;
+    else
+      for (size_t i = 0; i < light.size(); ++i) light[i] += workshop.view.luminance[i];
   }
-  for (float& l : light) l /= static_cast<float>(views);
+  if (views > 1)
+    for (float& l : light) l /= static_cast<float>(views);
   workshop.view_is_middle = views == 1;
 }
 

@@ -7,7 +7,6 @@
 
 #include "core/errors.h"
 #include "slam/vision/camera_model.h"
-#include "slam/vision/window_shape.h"
 
 namespace vsslam {
 
@@ -56,7 +55,7 @@ struct FeatureTracker::Impl {
   Impl(const FeatureTrackerConfig& c, const CameraCalibration& k)
       : config(c), calibration(k), camera(k), flow(c.flow, k.width_px, k.height_px) {}
 
-  VisualFrame track(const CameraFrame& image, const Quat* q_last_now) {
+  VisualFrame track(const CameraFrame& image, const Quat* q_last_now, bool detect) {
     require_size(image);
     flow.push(image);
     counts = {.equalized = flow.equalized()};
@@ -65,7 +64,7 @@ struct FeatureTracker::Impl {
     const Quat q_agreed = reject_outliers(last, q_last_now, image.stamp);
     follow_features(last, q_agreed);
     separate();
-    add_corners();
+    if (detect) add_corners();
     return frame(image.stamp);
   }
 
@@ -206,7 +205,7 @@ struct FeatureTracker::Impl {
     for (const Eigen::Vector2f& corner :
          find_corners(image, flow.noise_grey(), windows(tracks), most - tracks.size(), config.corners)) {
       const WindowShape shape = window_shape(image, static_cast<int>(corner.x()),
-                                             static_cast<int>(corner.y()), config.flow.window_px);
+                                             static_cast<int>(corner.y()), config.flow.window());
       Track track{next_id, shape, corner, shape.centre_px(), Vec2::Zero()};
       if (!locate(track)) continue;
       tracks.push_back(track);
@@ -236,8 +235,8 @@ FeatureTracker::FeatureTracker(const FeatureTrackerConfig& config, const CameraC
 }
 FeatureTracker::~FeatureTracker() = default;
 
-VisualFrame FeatureTracker::track(const CameraFrame& image, const Quat* q_last_now) {
-  return impl_->track(image, q_last_now);
+VisualFrame FeatureTracker::track(const CameraFrame& image, const Quat* q_last_now, bool detect) {
+  return impl_->track(image, q_last_now, detect);
 }
 
 void FeatureTracker::reset() {

@@ -40,8 +40,9 @@ class FeatureTracker {
 
   /// Frames in order of time. `q_last_now` is the camera's rotation since the last frame (coordinates of the
   /// new camera frame into the last one), where the gyroscope knows it: the guess of where features went.
+  /// With `detect` features that were lost are replaced; an image between those that are made use of can do without.
   /// Throws InputError if the image does not fit the calibration.
-  VisualFrame track(const CameraFrame& image, const Quat* q_last_now = nullptr);
+  VisualFrame track(const CameraFrame& image, const Quat* q_last_now = nullptr, bool detect = true);
   /// Forgets all tracks; ids go on.
   void reset();
   const TrackingCounts& counts() const;  ///< of the last image

@@ -81,7 +81,7 @@ struct OpticalFlow::Impl {
         height_px(height),
         clahe(cv::createCLAHE(c.clip_limit, {c.clahe_tiles, c.clahe_tiles})) {}
 
-  cv::Size window() const { return {config.window_px, config.window_px}; }
+  cv::Size window() const { return {config.window().width_px, config.window().height_px}; }
 
   void prepare(Image& image) {
     if (config.smoothing_px > 0) {

@@ -50,6 +50,7 @@ struct VisualInertialOdometry::Impl {
         motion_start(model) {}
 
   void add(const ImuSample& sample);
+  bool wants(Time stamp) const;
   std::optional<VioState> add(const VisualFrame& raw);
   std::optional<VioWindow> start(const VisualFrame& frame, const std::optional<RestMeans>& means);
   bool track(const VisualFrame& frame, const std::optional<RestMeans>& means);
@@ -71,13 +72,18 @@ void VisualInertialOdometry::Impl::add(const ImuSample& sample) {
     imu.forget_before(imu.samples().back().stamp - Duration::from_seconds(kLongestMemory_s));
 }
 
+// `stamp` by the camera's clock.
+bool VisualInertialOdometry::Impl::wants(Time stamp) const {
+  const Time now = stamp + Duration::from_seconds(model.config.time_offset_s);
+  return !last_frame || seconds_between(*last_frame, now) >= 0.9 / model.config.max_rate_hz;
+}
+
 // One frame.
 std::optional<VioState> VisualInertialOdometry::Impl::add(const VisualFrame& raw) {
   const StageTimer timer(clock, "vio");
   const VisualFrame frame = cleaned(raw, model.config.time_offset_s);
   if (last_frame && frame.stamp <= *last_frame) return std::nullopt;
-  if (last_frame && seconds_between(*last_frame, frame.stamp) < 0.9 / model.config.max_rate_hz)
-    return tracking ? propagated(frame.stamp) : std::nullopt;
+  if (!wants(raw.stamp)) return tracking ? propagated(frame.stamp) : std::nullopt;
   if (!imu.at(frame.stamp)) return std::nullopt;
   last_frame = frame.stamp;
   std::optional<RestMeans> means = rest.update(frame, imu);
@@ -277,6 +283,9 @@ VisualInertialOdometry::~VisualInertialOdometry() = default;
 
 void VisualInertialOdometry::add(const ImuSample& sample) {
   impl_->add(sample);
+}
+bool VisualInertialOdometry::wants(Time stamp) const {
+  return impl_->wants(stamp);
 }
 void VisualInertialOdometry::add(const VioAid& aid) {
   impl_->aid = aid;

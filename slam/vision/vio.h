@@ -104,6 +104,8 @@ class VisualInertialOdometry {
   void add(const ImuSample& sample);
   /// The latest knowledge of the LiDAR side; used at the next start or restart, ignored while tracking.
   void add(const VioAid& aid);
+  /// Whether a frame with this stamp would enter the window: `max_rate_hz` limits how many do.
+  bool wants(Time stamp) const;
   /// Frames in order of time, after the IMU samples up to their stamp; others are ignored. The state at the
   /// frame, if tracking.
   std::optional<VioState> add(const VisualFrame& frame);

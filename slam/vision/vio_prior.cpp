@@ -31,17 +31,19 @@ void VioPrior::add(const ImuSample& sample) {
   vio_.add(sample);
 }
 
-// One image: track, give depth, slide the window.
+// One image: track, and where the window wants it: look for new features, give depth, slide the window.
 void VioPrior::add(const CameraFrame& image) {
   const StageTimer whole(clock_, "image");
   const Time stamp = image.stamp + Duration::from_seconds(config_.vio.time_offset_s);
+  const bool wanted = vio_.wants(image.stamp);
   VisualFrame frame;
   {
     const StageTimer timer(clock_, "track");
     const std::optional<Quat> q_last_now = last_image_ ? camera_turn(*last_image_, stamp) : std::nullopt;
-    frame = tracker_.track(image, q_last_now ? &*q_last_now : nullptr);
+    frame = tracker_.track(image, q_last_now ? &*q_last_now : nullptr, wanted);
   }
   last_image_ = stamp;
+  if (!wanted) return;
   if (config_.lidar_depth) fill_depth(stamp, frame);
   vio_.add(frame);
 }

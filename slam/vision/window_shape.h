@@ -7,6 +7,10 @@
 
 namespace vsslam {
 
+struct WindowSize {
+  int width_px, height_px;
+};
+
 /// How the flow of a window answers when its content is not only shifted but warped: content at x about the
 /// centre moves by d + W x, and the flow that fits the window best is d + by_x W.col(0) + by_y W.col(1), where
 /// by_x = (sum g g')^-1 sum x g g' over its gradients g. Left alone, zoom and rotation between images shift a
@@ -21,6 +25,6 @@ struct WindowShape {
   /// gradients meet best (Foerstner & Guelch 1987).
   Eigen::Vector2f centre_px() const { return by_x.col(0) + by_y.col(1); }
 };
-WindowShape window_shape(const GreyView& image, int x, int y, int window_px);
+WindowShape window_shape(const GreyView& image, int x, int y, const WindowSize& window);
 
 }  // namespace vsslam

@@ -116,11 +116,13 @@ TEST(Corners, SmallImagesHaveNone) {
 TEST(Corners, AWindowGoesWithThePointWhereItsLinesMeet) {
   // Two edges that cross at (30.5, 24.5), in a window around (27, 27).
   const CameraFrame cross = draw(64, 64, [](int x, int y) { return (x > 30) == (y > 24) ? 200 : 50; });
-  const WindowShape shape = window_shape(view(cross), 27, 27, 21);
-  EXPECT_LT((shape.centre_px() - Eigen::Vector2f(3.5f, -2.5f)).norm(), 0.1f);
-  EXPECT_LT((shape.flow_of(0.1f * Eigen::Matrix2f::Identity()) - 0.1f * shape.centre_px()).norm(), 1e-6f);
+  for (const WindowSize window : {WindowSize{21, 21}, WindowSize{24, 21}}) {
+    const WindowShape shape = window_shape(view(cross), 27, 27, window);
+    EXPECT_LT((shape.centre_px() - Eigen::Vector2f(3.5f, -2.5f)).norm(), 0.1f);
+    EXPECT_LT((shape.flow_of(0.1f * Eigen::Matrix2f::Identity()) - 0.1f * shape.centre_px()).norm(), 1e-6f);
+  }
   const CameraFrame flat = draw(64, 64, [](int, int) { return 100; });
-  EXPECT_EQ(window_shape(view(flat), 27, 27, 21).centre_px(), Eigen::Vector2f(0, 0));
+  EXPECT_EQ(window_shape(view(flat), 27, 27, {21, 21}).centre_px(), Eigen::Vector2f(0, 0));
 }
 
 }  // namespace
