@@ -37,7 +37,7 @@ std::string packet(int i) {
   return bytes + "\x37\x22";
 }
 
-std::string little(uint32_t value, int count) {
+std::string little(uint64_t value, int count) {
   std::string bytes;
   for (int k = 0; k < count; ++k) bytes += static_cast<char>(value >> 8 * k);
   return bytes;
