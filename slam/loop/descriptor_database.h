@@ -2,7 +2,6 @@
 #pragma once
 
 #include <functional>
-#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -37,7 +36,6 @@ class DescriptorDatabase {
 
   /// Queries of more than `exhaustive_pairs` descriptor pairs compare the nearest ring keys only.
   explicit DescriptorDatabase(int exhaustive_pairs);
-  ~DescriptorDatabase();
 
   /// Entries come in ascending order of key and stamp.
   void add(int key, Time stamp, const ScanContext& context);
@@ -51,20 +49,19 @@ class DescriptorDatabase {
   /// The nearest to any of the descriptors among those of the first `eligible` entries that `may_match` (null:
   /// all). Equal distances: the lower entry, then the lower descriptor.
   std::optional<DescriptorMatch> find(std::span<const QueryDescriptor> query, size_t eligible,
-                                      const Filter& may_match = nullptr);
+                                      const Filter& may_match = nullptr) const;
 
  private:
-  class RingKeyTree;
   std::vector<size_t> candidates(std::span<const QueryDescriptor> query, size_t eligible,
-                                 const Filter& may_match);
-  void nearest_ring_keys(const ScanContext& context, size_t eligible, std::vector<size_t>& out) const;
+                                 const Filter& may_match) const;
+  void add_nearest_ring_keys(const ScanContext& context, std::span<const size_t> among,
+                             std::vector<size_t>& out) const;
 
   using RingKey = decltype(ScanContext::ring_key);
 
   int exhaustive_pairs_;
   std::vector<Entry> entries_;
-  std::vector<RingKey> ring_keys_;     // of the entries, side by side for the search
-  std::unique_ptr<RingKeyTree> tree_;  // of the first entries; those after it are compared one by one
+  std::vector<RingKey> ring_keys_;  // of the entries, side by side for the search
 };
 
 }  // namespace vsslam

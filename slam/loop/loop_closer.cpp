@@ -52,7 +52,7 @@ LoopCloser::~LoopCloser() = default;
 std::vector<LoopRecord> LoopCloser::add(const std::vector<KeyScan>& keys, Time now) {
   if (!impl_->detector) return {};
   LoopDetector& detector = *impl_->detector;
-  detector.remember(keys.back());
+  detector.remember(keys);
   if (!impl_->due(now)) return {};
   std::optional<LoopRecord> record = detector.detect(keys);
   if (!record) return {};

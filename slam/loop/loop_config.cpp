@@ -112,6 +112,7 @@ void SelectiveMemoryConfig::fields(Fields& f) {
   f("key_descriptors", key_descriptors);
   f("alpha_t_th", alpha_t_th, between(0, 1));
   f("alpha_r_th", alpha_r_th, between(0, 1));
+  f.choice("novel_to", novel_to, {{"last", NovelTo::last}, {"search", NovelTo::search}});
   f("key_distance", key_distance, between(0, 2));
 }
 

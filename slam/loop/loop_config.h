@@ -98,11 +98,15 @@ struct VirtualDescriptorConfig {
 
 /// Which key scans are searched for and stored.
 struct SelectiveMemoryConfig {
+  /// What a descriptor must differ from to be novel: the last one stored, as published; or all those stored that a
+  /// search from here would compare, so that a place passed again is not stored again.
+  enum class NovelTo { last, search };
   bool scene_recognition = true;  ///< off: every scene counts as distinct
   bool key_descriptors = true;    ///< off: every descriptor counts as novel
   /// Oblateness from which on a scene is structurally similar; 1 - 1 / the condition number of the block.
   double alpha_t_th = 0.98, alpha_r_th = 0.98;
-  double key_distance = 0.25;  ///< d_th: a descriptor further from the last stored one is novel
+  NovelTo novel_to = NovelTo::search;
+  double key_distance = 0.25;  ///< d_th: a descriptor further from these is novel
   void fields(Fields& f);
 };
 

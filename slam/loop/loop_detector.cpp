@@ -54,7 +54,8 @@ class ScanContextDetector final : public LoopDetector {
         clock_(clock),
         database_(config.exhaustive_pairs) {}
 
-  void remember(const KeyScan& key) override {
+  void remember(const std::vector<KeyScan>& keys) override {
+    const KeyScan& key = keys.back();
     const StageTimer timer(clock_, "loop_descriptor");
     newest_ = QueryDescriptor{
         ScanContext(polar_heights(*key.points_lidar, lidar_.mount_height_m, scan_context_)), 0, {0, 0}};

@@ -15,8 +15,8 @@ class LoopDetector {
  public:
   virtual ~LoopDetector() = default;
 
-  /// Learns of every key scan, in order.
-  virtual void remember(const KeyScan& /*key*/) {}
+  /// Learns of every key scan, in order; the newest is the last.
+  virtual void remember(const std::vector<KeyScan>& /*keys*/) {}
   /// What became of the newest key scan, of a method that selects.
   virtual std::optional<MemoryDecision> decision() const { return std::nullopt; }
   /// The candidate for the newest key scan: ids, descriptors and the guess T_match_query. A candidate with

@@ -2,8 +2,8 @@
 // storing.
 #pragma once
 
-#include <optional>
 #include <span>
+#include <vector>
 
 #include "slam/lidar/information.h"
 #include "slam/loop/descriptor_database.h"
@@ -12,20 +12,8 @@
 
 namespace vsslam {
 
-class SelectiveMemory {
- public:
-  explicit SelectiveMemory(const SelectiveMemoryConfig& config) : config_(config) {}
-
-  /// Key scans in order; `query` begins with the scan's own descriptor. What is stored becomes the one that
-  /// the next are compared with.
-  MemoryDecision decide(const Information& information, std::span<const QueryDescriptor> query);
-
- private:
-  bool distinct(const Information& information) const;
-  bool novel(std::span<const QueryDescriptor> query) const;
-
-  SelectiveMemoryConfig config_;
-  std::optional<ScanContext> last_stored_;
-};
+/// `query` begins with the scan's own descriptor; `stored` are those that it must differ from to be novel.
+MemoryDecision decide(const SelectiveMemoryConfig& config, const Information& information,
+                      std::span<const QueryDescriptor> query, const std::vector<const ScanContext*>& stored);
 
 }  // namespace vsslam

@@ -1,5 +1,6 @@
 #include "slam/loop/vs_slam_detector.h"
 
+#include "slam/loop/selective_memory.h"
 #include "slam/loop/virtual_descriptors.h"
 
 namespace vsslam {
@@ -10,15 +11,27 @@ VsSlamDetector::VsSlamDetector(const VsSlamLoopConfig& config, const LoopConfig&
       scan_context_(common.scan_context),
       lidar_(lidar),
       clock_(clock),
-      memory_(config.memory),
       database_(common.exhaustive_pairs) {}
 
-void VsSlamDetector::remember(const KeyScan& key) {
+void VsSlamDetector::remember(const std::vector<KeyScan>& keys) {
   const StageTimer timer(clock_, "loop_descriptor");
+  const KeyScan& key = keys.back();
   query_ =
       describe_query(*key.points_lidar, lidar_.mount_height_m, scan_context_, config_.virtual_descriptors);
-  decision_ = memory_.decide(key.information, query_);
+  decision_ = decide(config_.memory, key.information, query_, to_differ_from(keys));
   if (decision_->stored()) database_.add(key.id, key.stamp, query_.front().context);
+}
+
+// The last one stored; and those stored near the newest key scan, made however recently.
+std::vector<const ScanContext*> VsSlamDetector::to_differ_from(const std::vector<KeyScan>& keys) const {
+  const std::vector<DescriptorDatabase::Entry>& entries = database_.entries();
+  std::vector<const ScanContext*> stored;
+  for (size_t i = 0; i < entries.size(); ++i) {
+    const bool near = config_.memory.novel_to == SelectiveMemoryConfig::NovelTo::search &&
+                      within_reach(keys.back(), keys[static_cast<size_t>(entries[i].key)]);
+    if (near || i + 1 == entries.size()) stored.push_back(&entries[i].context);
+  }
+  return stored;
 }
 
 // A similar scene is neither stored nor searched; a distinct one is searched whether it was stored or not.

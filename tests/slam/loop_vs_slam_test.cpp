@@ -68,44 +68,43 @@ Information information(double alpha_t, double alpha_r) {
 TEST(SelectiveMemory, SimilarScenesAreNotDistinct) {
   const auto query = query_at(0, 0);
   const auto distinct = [&](double alpha_t, double alpha_r) {
-    return SelectiveMemory({}).decide(information(alpha_t, alpha_r), query).distinct;
+    return decide({}, information(alpha_t, alpha_r), query, {}).distinct;
   };
   EXPECT_TRUE(distinct(0.5, 0.5));
   EXPECT_TRUE(distinct(0.979, 0.979));
   EXPECT_FALSE(distinct(0.981, 0.5));
   EXPECT_FALSE(distinct(0.5, 0.981));
-  EXPECT_FALSE(SelectiveMemory({}).decide(Information{}, query).distinct);  // no information at all
+  EXPECT_FALSE(decide({}, Information{}, query, {}).distinct);  // no information at all
   SelectiveMemoryConfig off;
   off.scene_recognition = false;
-  EXPECT_TRUE(SelectiveMemory(off).decide(information(1, 1), query).distinct);
+  EXPECT_TRUE(decide(off, information(1, 1), query, {}).distinct);
 }
 
-TEST(SelectiveMemory, ComparesWithTheLastStoredOnly) {
-  SelectiveMemory memory({});
+TEST(SelectiveMemory, IsNovelIfUnlikeAllThatItMustDifferFrom) {
   const Information clear = information(0.5, 0.5), similar = information(0.999, 0.5);
   const auto near = query_at(0, 0), far = query_at(9, -6);
   ASSERT_GT(scan_context_distance(near[0].context, far[0].context).distance, 0.25);
-  EXPECT_FALSE(memory.decide(similar, near).stored());  // the first, but of a similar scene
-  EXPECT_TRUE(memory.decide(clear, near).stored());
-  EXPECT_FALSE(memory.decide(clear, near).novel);
-  EXPECT_FALSE(memory.decide(similar, far).stored());  // novel, not stored: the last stored one stays
-  EXPECT_FALSE(memory.decide(clear, near).novel);
-  EXPECT_TRUE(memory.decide(clear, far).stored());
-  EXPECT_TRUE(memory.decide(clear, near).stored());  // like an older one, unlike the last
+  const ScanContext *at_near = &near[0].context, *at_far = &far[0].context;
+  EXPECT_TRUE(decide({}, clear, near, {}).stored());
+  EXPECT_TRUE(decide({}, clear, near, {at_far}).stored());
+  EXPECT_FALSE(decide({}, clear, near, {at_far, at_near}).stored());
+  EXPECT_TRUE(decide({}, similar, near, {}).novel);
+  EXPECT_FALSE(decide({}, similar, near, {}).stored());
+  SelectiveMemoryConfig off;
+  off.key_descriptors = false;
+  EXPECT_TRUE(decide(off, clear, near, {at_near}).stored());
 }
 
 TEST(SelectiveMemory, OneSimilarVirtualDescriptorIsEnoughNotToStore) {
   const Information clear = information(0.5, 0.5);
   const auto stored = query_at(0, 0);
+  const auto novel = [&](double x_m, int distances) {
+    return decide({}, clear, query_at(x_m, 0, distances), {&stored.front().context}).novel;
+  };
   double x_m = 0;  // so far aside that the descriptor itself is novel
-  for (bool novel = false; !novel && x_m < 6; x_m += 0.5) {
-    SelectiveMemory memory({});
-    memory.decide(clear, stored);
-    novel = memory.decide(clear, query_at(x_m, 0)).novel;
-  }
-  SelectiveMemory memory({});
-  memory.decide(clear, stored);
-  EXPECT_FALSE(memory.decide(clear, query_at(x_m - 0.5, 0, 2)).novel);
+  while (x_m < 6 && !novel(x_m, 0)) x_m += 0.5;
+  ASSERT_LT(x_m, 6);
+  EXPECT_FALSE(novel(x_m, 2));
 }
 
 int true_loops(const std::vector<LoopRecord>& records, const Drive& drive) {
@@ -145,6 +144,20 @@ TEST(VsSlam, StoresAFewAndStillClosesLoops) {
   EXPECT_GT(true_loops(records, drive), 5);
   ASSERT_TRUE(selecting.decision());
   EXPECT_FALSE(scan_context.decision());
+}
+
+TEST(VsSlam, APlacePassedAgainIsNotStoredAgain) {
+  const auto stored = [](SelectiveMemoryConfig::NovelTo novel_to, int keys) {
+    LoopConfig config;
+    config.vs_slam.memory.novel_to = novel_to;
+    LoopCloser closer(config, Method::vs_slam, kLidar, nullptr);
+    play(closer, laps(keys, 0.005));
+    return closer.stored().size();
+  };
+  using enum SelectiveMemoryConfig::NovelTo;
+  EXPECT_GT(stored(last, 25), 2u);
+  EXPECT_LE(stored(search, 75), stored(search, 25) + 1);
+  EXPECT_GE(stored(last, 75), 2 * stored(last, 25));
 }
 
 TEST(VsSlam, StoringAndSearchingNothingIsNoLoopClosing) {
