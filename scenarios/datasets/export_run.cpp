@@ -134,9 +134,10 @@ class ExportRun final : public Pipeline {
       return begin(kDrive, drive());
     return {};
   }
+  // While a step of the driving runs, what it changes is not to be read.
   bool finished() const override {
-    return driving_ && driving_->ended() && motions_.empty() && chunks_.empty() &&
-           std::none_of(std::begin(busy_), std::end(busy_), [](bool b) { return b; });
+    return driving_ && std::none_of(std::begin(busy_), std::end(busy_), [](bool b) { return b; }) &&
+           driving_->ended() && motions_.empty() && chunks_.empty();
   }
 
  private:
@@ -157,7 +158,11 @@ class ExportRun final : public Pipeline {
                   *driving = std::make_unique<Driving>(place_.scenario(), place_.world(), &drive_clock_);
                   acquisition_ = std::make_unique<Acquisition>(place_.scenario(), place_.world(), sinks_);
                 },
-            .commit = [this, driving] { driving_ = std::move(*driving); }};
+            .commit =
+                [this, driving] {
+                  driving_ = std::move(*driving);
+                  expected_s_ = driving_->expected_duration_s();
+                }};
   }
 
   Step drive() {
@@ -169,6 +174,7 @@ class ExportRun final : public Pipeline {
             .commit =
                 [this, motion] {
                   motions_.push_back(*motion);
+                  expected_s_ = driving_->expected_duration_s();
                   const DriveOutcome drive = driving_->outcome();
                   if (drive == DriveOutcome::stuck || drive == DriveOutcome::collided)
                     outcome_.failure = driving_->outcome_text();
@@ -204,7 +210,7 @@ class ExportRun final : public Pipeline {
                 [this] {
                   outcome_.counts.duration_s = chunks_.front()->until.seconds();
                   chunks_.pop_front();
-                  on_progress_(driving_->expected_duration_s());
+                  on_progress_(expected_s_);
                 }};
   }
 
@@ -235,6 +241,7 @@ class ExportRun final : public Pipeline {
   std::deque<std::shared_ptr<const Motion>> motions_;  // driven, not yet sensed
   std::deque<std::shared_ptr<SampleChunk>> chunks_;    // sensed, not yet written
   Time needed_from_{0};
+  double expected_s_ = 0;
   bool busy_[kStages] = {};
 };
 

@@ -23,7 +23,7 @@ size_t DescriptorDatabase::count_until(int last_key, Time last_stamp) const {
   return static_cast<size_t>(end - entries_.begin());
 }
 
-// Of `among`, which must not be empty.
+// Of those among.
 void DescriptorDatabase::add_nearest_ring_keys(const ScanContext& context, std::span<const size_t> among,
                                                std::vector<size_t>& out) const {
   std::vector<std::pair<float, size_t>> nearest;

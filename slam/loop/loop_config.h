@@ -98,8 +98,8 @@ struct VirtualDescriptorConfig {
 
 /// Which key scans are searched for and stored.
 struct SelectiveMemoryConfig {
-  /// What a descriptor must differ from to be novel: the last one stored, as published; or all those stored that a
-  /// search from here would compare, so that a place passed again is not stored again.
+  /// What a descriptor must differ from to be novel: the last one stored, as published; or all that are stored where a
+  /// search from here looks, recent ones too, so that a place passed again is not stored again.
   enum class NovelTo { last, search };
   bool scene_recognition = true;  ///< off: every scene counts as distinct
   bool key_descriptors = true;    ///< off: every descriptor counts as novel

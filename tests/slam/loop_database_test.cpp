@@ -79,7 +79,7 @@ TEST(DescriptorDatabase, RingKeysOfALargeDatabaseFindWhatAllPairsFind) {
     const double place = 100 * places.uniform(static_cast<uint64_t>(key));
     const QueryDescriptor query[2] = {{context_at(place + 0.01), 0, {0, 0}},
                                       {context_at(place + 50), 1, {1, 0}}};
-    // Every entry added so far can be found at once: the tree is never stale.
+    // Every entry added so far can be found at once.
     const auto a = all.find(query, all.entries().size()), b = prefiltered.find(query, all.entries().size());
     EXPECT_EQ(a.has_value(), b.has_value());
     if (a && b) {
