@@ -56,7 +56,7 @@ struct VioLimits {
 /// Pixels are at a focal length of 460, as published, whatever the camera.
 struct VioConfig {
   int window = 10;                  ///< key frames beside the newest frame
-  double max_rate_hz = 15;          ///< of frames that enter the window; the others cost nothing
+  double max_rate_hz = 10;          ///< of frames that enter the window; the others cost nothing
   double time_offset_s = 0;         ///< camera clock + offset = IMU clock
   double feature_sigma_px = 1.5;    ///< of a feature's position
   double depth_sigma_ratio = 0.03;  ///< of a LiDAR depth, of the depth

@@ -30,8 +30,12 @@ struct VioSolution {
   int iterations = 0;
   bool usable = false;
 };
-/// Moves `x` to where the factors' cost is least.
-VioSolution minimize(const std::vector<WindowFactor>& factors, WindowValues& x, int max_iterations);
+/// When a step changes the cost by less than this share, it is good enough: the cost is half of chi-squared, about 100 for
+/// a window, a change of it by 0.1 says nothing about the state, and the next frame's solution goes on from there.
+inline constexpr double kCostTolerance = 1e-3;
+/// Moves `x` to where the factors' cost is least. No limit on wall-clock time.
+VioSolution minimize(const std::vector<WindowFactor>& factors, WindowValues& x, int max_iterations,
+                     double cost_tolerance = kCostTolerance);
 /// Optimises all states and the points of the usable features, and writes them into the window.
 VioSolution solve(VioWindow& window, const VioModel& model, int max_iterations);
 

@@ -9,7 +9,6 @@ namespace vsslam {
 
 namespace {
 
-constexpr double kFunctionTolerance = 1e-4;  // relative; no limit on wall-clock time
 constexpr double kFirstRadius = 1e4;
 constexpr double kLeastGain = 1e-3;  // of the cost predicted, for a step to be taken
 
@@ -53,7 +52,8 @@ class DogLeg {
 
 }  // namespace
 
-VioSolution minimize(const std::vector<WindowFactor>& factors, WindowValues& x, int max_iterations) {
+VioSolution minimize(const std::vector<WindowFactor>& factors, WindowValues& x, int max_iterations,
+                     double cost_tolerance) {
   WindowEquations equations(factors, x.points.size());
   double cost = window_cost(factors, x), radius = kFirstRadius;
   VioSolution solution{.initial_cost = cost, .final_cost = cost, .iterations = 0, .usable = false};
@@ -70,8 +70,8 @@ VioSolution minimize(const std::vector<WindowFactor>& factors, WindowValues& x, 
       const double trial_cost = window_cost(factors, trial);
       const double gain = (cost - trial_cost) / predicted;  // NaN: not accepted
       accepted = gain > kLeastGain;
-      converged = predicted <= kFunctionTolerance * cost ||
-                  (accepted && cost - trial_cost <= kFunctionTolerance * cost);
+      converged =
+          predicted <= cost_tolerance * cost || (accepted && cost - trial_cost <= cost_tolerance * cost);
       if (gain > 0.75) radius = std::max(radius, 3 * leg.length(step));
       if (!(gain > 0.25)) radius = 0.5 * std::min(radius, leg.length(step));
       if (!accepted) continue;

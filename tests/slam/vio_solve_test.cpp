@@ -90,16 +90,16 @@ double solved_by_ceres(Scene& scene) {
 TEST(VioSolve, FindsTheMinimumThatCeresFinds) {
   Scene ours(6, 40), theirs(6, 40);
   const double start = window_cost(ours.factors, ours.x);
-  const VioSolution solution = minimize(ours.factors, ours.x, 100);
+  const VioSolution solution = minimize(ours.factors, ours.x, 200, 1e-10);
   const double cost = solved_by_ceres(theirs);
   ASSERT_TRUE(solution.usable);
   EXPECT_DOUBLE_EQ(solution.initial_cost, start);
   EXPECT_LT(cost, 0.3 * start);
-  EXPECT_NEAR(solution.final_cost, cost, 2e-4 * cost);
+  EXPECT_NEAR(solution.final_cost, cost, 1e-8 * cost);
   for (size_t i = 0; i < ours.x.frames.size(); ++i) {
     const SE3 between =
         pose_of(ours.x.frames[i].pose.data()).inverse() * pose_of(theirs.x.frames[i].pose.data());
-    EXPECT_LT(between.log().norm(), 2e-3) << i;
+    EXPECT_LT(between.log().norm(), 1e-5) << i;
   }
 }
 
