@@ -58,6 +58,16 @@ class IcpTarget::Tree {
     return result.neighbours();
   }
 
+  Cloud nearest(const Eigen::Vector3f& point, int count) const {
+    const auto wanted = static_cast<size_t>(count);
+    std::vector<uint32_t> indices(wanted);
+    std::vector<float> squared(wanted);
+    indices.resize(index_.knnSearch(point.data(), wanted, indices.data(), squared.data()));
+    Cloud near;
+    for (uint32_t i : indices) near.push_back(points_.cloud[i]);
+    return near;
+  }
+
  private:
   static constexpr size_t kLeafSize = 12;
   Points points_;
@@ -70,6 +80,10 @@ IcpTarget::~IcpTarget() = default;
 
 IcpTarget::Neighbours IcpTarget::find(const Eigen::Vector3f& point, float radius_m) const {
   return tree_->find(point, radius_m);
+}
+
+Cloud IcpTarget::nearest(const Eigen::Vector3f& point, int count) const {
+  return tree_->nearest(point, count);
 }
 
 namespace {
@@ -226,6 +240,13 @@ IcpResult align(const Cloud& source, const IcpTarget& target, const SE3& T_targe
   pairing.update(result.T_target_source);
   score(pairing, overlap_distance_m, result);
   return result;
+}
+
+void score(const Cloud& source, const IcpTarget& target, double max_correspondence_m,
+           double overlap_distance_m, IcpResult& result) {
+  Pairing pairing(source, target, max_correspondence_m);
+  pairing.update(result.T_target_source);
+  score(pairing, overlap_distance_m, result);
 }
 
 }  // namespace vsslam

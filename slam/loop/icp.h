@@ -24,6 +24,8 @@ class IcpTarget {
     float next_distance_m = 0;  ///< to the second nearest, or the radius if there is none within it
   };
   Neighbours find(const Eigen::Vector3f& point, float radius_m) const;
+  /// The `count` points nearest to `point`, nearest first; all if there are no more.
+  Cloud nearest(const Eigen::Vector3f& point, int count) const;
 
  private:
   class Tree;
@@ -44,5 +46,9 @@ struct IcpResult {
 /// max_correspondence_m, and takes the closed-form transform of these pairs.
 IcpResult align(const Cloud& source, const IcpTarget& target, const SE3& T_target_source,
                 const IcpConfig& config, double overlap_distance_m);
+
+/// Fitness, inlier ratio and overlap at result.T_target_source.
+void score(const Cloud& source, const IcpTarget& target, double max_correspondence_m,
+           double overlap_distance_m, IcpResult& result);
 
 }  // namespace vsslam

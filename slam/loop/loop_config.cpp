@@ -78,6 +78,7 @@ void VerificationConfig::fields(Fields& f) {
   f("min_target_points", min_target_points, at_least(3));
   f("centroid_guess_m", centroid_guess_m, non_negative());
   f("prediction_ratio", prediction_ratio, between(0, 10));
+  f("min_plane_share", min_plane_share, between(0, 1));
   f("max_gap_m", max_gap_m, non_negative());
   f("max_gap_share", max_gap_share, between(0, 1));
   f("max_gap_rad", max_gap_rad, between(0, 4));

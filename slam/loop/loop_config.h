@@ -56,6 +56,10 @@ struct VerificationConfig {
   /// ICP also starts where odometry expects the loop. That fit is taken if it is about as good: fitness at most so many
   /// times that of the first, overlap at least the inverse share. 0: not tried.
   double prediction_ratio = 0;
+  /// The fit is refined point to plane; directions that a smaller share of the planes sees (DegeneracyConfig) take
+  /// what odometry expects, since point-to-point ICP slides along them to where the map has more points. 0: not
+  /// refined.
+  double min_plane_share = 0;
   /// How far the loop may be from where odometry expects it: so much, and so much of the way since the match;
   /// 0 and 0: any.
   double max_gap_m = 0, max_gap_share = 0;
@@ -128,6 +132,7 @@ struct VsSlamLoopConfig {
   VerificationConfig verification{.icp = {},
                                   .min_overlap = 0.6,
                                   .prediction_ratio = 1.25,
+                                  .min_plane_share = 0.01,
                                   .max_gap_m = 1.0,
                                   .max_gap_share = 0.01,
                                   .max_gap_rad = 0.35};

@@ -1,5 +1,7 @@
 #include "slam/loop/verify_loop.h"
 
+#include "slam/loop/plane_fit.h"
+
 namespace vsslam {
 
 namespace {
@@ -21,6 +23,31 @@ SE3 meet(const SE3& T_match_query, const Cloud& source_query, const Cloud& targe
 bool prefers_prediction(const IcpResult& predicted, const IcpResult& other, double ratio) {
   if (!predicted.converged || !other.converged) return predicted.converged;
   return predicted.fitness_m2 <= ratio * other.fitness_m2 && ratio * predicted.overlap >= other.overlap;
+}
+
+/// ICP from the guess and, if asked for, from the prediction.
+IcpResult fit(const Cloud& source, const IcpTarget& target, const SE3& guess, const SE3& predicted,
+              const VerificationConfig& config) {
+  const IcpResult first = align(source, target, guess, config.icp, config.overlap_distance_m);
+  if (config.prediction_ratio <= 0) return first;
+  const IcpResult other = align(source, target, predicted, config.icp, config.overlap_distance_m);
+  return prefers_prediction(other, first, config.prediction_ratio) ? other : first;
+}
+
+/// Refines a fit where the target has planes; directions that they do not see take the prediction.
+void settle_on_planes(const Cloud& source, const IcpTarget& target, const SE3& predicted,
+                      const VerificationConfig& config, IcpResult& icp) {
+  const PlaneFitConfig planes{.max_pair_m = config.overlap_distance_m,
+                              .min_pairs = config.min_source_points,
+                              .step_translation_m = config.icp.step_translation_m,
+                              .step_rotation_rad = config.icp.step_rotation_rad,
+                              .degeneracy = {.min_share = config.min_plane_share}};
+  const PlaneFit fit = fit_to_planes(source, target, icp.T_target_source, predicted, planes);
+  if (fit.iterations == 0) return;
+  icp.T_target_source = fit.T_target_source;
+  icp.iterations += fit.iterations;
+  icp.converged = fit.converged;
+  score(source, target, config.icp.max_correspondence_m, config.overlap_distance_m, icp);
 }
 
 /// Whether odometry can have drifted as far as the loop says.
@@ -50,12 +77,9 @@ void verify_loop(const std::vector<KeyScan>& keys, const SE3& T_base_lidar, cons
     return;
   }
   const SE3 guess = meet(record.T_match_query, source_query, target->points(), config.centroid_guess_m);
-  IcpResult icp = align(source_query, *target, guess, config.icp, config.overlap_distance_m);
-  if (config.prediction_ratio > 0) {
-    const IcpResult predicted =
-        align(source_query, *target, record.T_match_query_predicted, config.icp, config.overlap_distance_m);
-    if (prefers_prediction(predicted, icp, config.prediction_ratio)) icp = predicted;
-  }
+  IcpResult icp = fit(source_query, *target, guess, record.T_match_query_predicted, config);
+  if (config.min_plane_share > 0 && icp.converged)
+    settle_on_planes(source_query, *target, record.T_match_query_predicted, config, icp);
   record.icp_run = true;
   record.icp_converged = icp.converged;
   record.icp_iterations = icp.iterations;

@@ -29,6 +29,7 @@ Vec2 verified_errors_m(const TestRoom& room, double prediction_ratio) {
   const std::vector<KeyScan> keys = keys_in(room, T_map_query);
   VerificationConfig config = VsSlamLoopConfig{}.verification;
   config.prediction_ratio = prediction_ratio;
+  config.min_plane_share = 0;
   LocalMaps maps({}, SE3());
   LoopRecord record;
   record.match = 4;
@@ -53,6 +54,42 @@ TEST(Verification, WhereTheWallsTellTheFirstFitIsGoodEnough) {
   const Vec2 errors = verified_errors_m(cluttered_room(), 0);
   EXPECT_LT(errors.norm(), 0.1);
   EXPECT_LT(verified_errors_m(cluttered_room(), 1.25).norm(), 0.1);
+}
+
+// Walls are seen up to 7 m away, further on the rays graze them.
+Cloud nearby(const Cloud& cloud_lidar) {
+  Cloud near;
+  for (const Eigen::Vector3f& p : cloud_lidar)
+    if (p.norm() <= 7) near.push_back(p);
+  return near;
+}
+
+// Ten key scans from 0 to 9 m, and a query that comes the other way, still 4 m before the last of them: a
+// quarter of what it sees lies beyond the map. Errors of the accepted pose along the corridor and across.
+Vec2 errors_before_the_end_of_the_map_m(double min_plane_share) {
+  const SE3 T_map_query = at(13, 0.3);
+  std::vector<KeyScan> keys = keys_in(TestRoom{long_corridor().front()}, T_map_query);
+  for (KeyScan& key : keys) key.features_lidar = share(nearby(*key.features_lidar));
+  keys[10].way_m = 400;
+  VerificationConfig config = VsSlamLoopConfig{}.verification;
+  config.min_plane_share = min_plane_share;
+  LocalMaps maps({}, SE3());
+  LoopRecord record;
+  record.match = 9;
+  record.query = 10;
+  const SE3 truth = keys[9].T_map_base.inverse() * T_map_query;
+  record.T_match_query = SE3(Quat::Identity(), {-2.5, 0.2, 0}) * truth;  // as a virtual descriptor may say
+  record.T_match_query_predicted = SE3(Quat::Identity(), {0.05, -0.1, 0}) * truth;
+  verify_loop(keys, SE3(), config, maps, record);
+  EXPECT_TRUE(record.accepted) << record.why;
+  return (record.T_match_query.translation - truth.translation).head<2>();
+}
+
+TEST(Verification, IsNotDrawnBackToWhereTheMapHasMorePoints) {
+  EXPECT_LT(errors_before_the_end_of_the_map_m(0).x(), -3);
+  const Vec2 errors = errors_before_the_end_of_the_map_m(0.01);
+  EXPECT_NEAR(errors.x(), 0.05, 1e-3);  // what odometry says: no wall contradicts it
+  EXPECT_NEAR(errors.y(), 0, 1e-3);
 }
 
 }  // namespace
