@@ -66,7 +66,8 @@ void Mapping::Impl::add_key(const OdometryScan& scan) {
   graph.add_node(key.id, key.T_map_base);
   if (!keys.empty()) {
     const SE3 T_last_key = keys.back().T_odom_base.inverse() * key.T_odom_base;
-    graph.add_edge({keys.back().id, key.id, T_last_key, config.graph.odometry_information()});
+    const Vec6 information = config.graph.odometry_variances().cwiseInverse();
+    graph.add_edge({keys.back().id, key.id, T_last_key, information.asDiagonal()});
     key.way_m = keys.back().way_m + T_last_key.translation.norm();
   }
   keys.push_back(std::move(key));
@@ -75,7 +76,7 @@ void Mapping::Impl::add_key(const OdometryScan& scan) {
 void Mapping::Impl::close_loops(Time now) {
   const StageTimer timer(clock, "loop");
   for (LoopRecord& record : loop_closer.add(keys, now)) {
-    if (record.accepted) graph.add_edge(loop_edge(record));
+    if (record.accepted) graph.add_edge(loop_edge(record, config.graph));
     graph_changed |= record.accepted;
     loops.push_back(std::move(record));
   }

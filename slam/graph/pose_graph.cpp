@@ -11,11 +11,11 @@ void PoseGraphConfig::fields(Fields& f) {
   f("cost_tolerance", cost_tolerance, between(0, 0.1));
 }
 
-Mat6 PoseGraphConfig::odometry_information() const {
-  Vec6 diagonal;
-  diagonal << Vec3::Constant(1.0 / odometry_rotation_variance_rad2),
-      Vec3::Constant(1.0 / odometry_translation_variance_m2);
-  return diagonal.asDiagonal();
+Vec6 PoseGraphConfig::odometry_variances() const {
+  Vec6 variances;
+  variances << Vec3::Constant(odometry_rotation_variance_rad2),
+      Vec3::Constant(odometry_translation_variance_m2);
+  return variances;
 }
 
 Vec6 edge_error(const SE3& T_from_to, const SE3& T_map_from, const SE3& T_map_to) {

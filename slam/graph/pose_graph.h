@@ -19,8 +19,8 @@ struct PoseGraphConfig {
   double cost_tolerance = 1e-8;  ///< stop when a step lowers the cost by less than this share of it
   void fields(Fields& f);
 
-  /// Information of an odometry edge, tangent order [rotation; translation].
-  Mat6 odometry_information() const;
+  /// Of an odometry edge, tangent order [rotation; translation]: rad^2, m^2.
+  Vec6 odometry_variances() const;
 };
 
 /// Relative pose of two nodes. Information has the tangent order [rotation; translation].

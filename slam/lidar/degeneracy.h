@@ -36,6 +36,11 @@ struct Degeneracy {
   /// prior) stays in the degenerate ones. With V_kept the observed columns, x = S V_kept (V_kept^T S A S
   /// V_kept)^-1 V_kept^T S b; where A = H this is V_kept V_kept^T applied to the full solution.
   Vec6 solve(const Mat6& A, const Vec6& b) const;
+  /// The part of a step [rotation; translation] that lies in the degenerate directions.
+  Vec6 unseen_part(const Vec6& step) const;
+  /// Information of a pose measured in the observed directions only, with the variances `seen` [rad^2; m^2], and
+  /// believed with `unseen_variance` in the degenerate ones, in m^2, or rad^2 times L^2. Positive definite.
+  Mat6 information(const Vec6& seen, double unseen_variance) const;
   /// Projector on the observed rotations and translations, sensor frame: 3 x 3 blocks of V_kept V_kept^T.
   Mat3 observed_rotation() const;
   Mat3 observed_translation() const;

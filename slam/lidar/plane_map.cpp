@@ -1,9 +1,10 @@
 #include "slam/lidar/plane_map.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <bit>
 #include <cmath>
+
+#include "slam/lidar/patch.h"
 
 namespace vsslam {
 
@@ -75,20 +76,16 @@ struct CellSums {
   }
 };
 
-// The standard deviation of the normal is sigma / sqrt(count * spread along the shorter side). The chords, whose
-// ends are as noisy as the points, must lie in the plane too.
+// The chords, whose ends are as noisy as the points, must lie in the plane too.
 bool fit_plane(const Sums& sums, const Eigen::Vector3f& origin, const PlaneMapConfig& config, Plane& plane) {
   if (sums.count < config.min_points || std::popcount(sums.lines) < config.min_lines) return false;
   const Vec3 mean = sums.offset / sums.count;
-  Eigen::SelfAdjointEigenSolver<Mat3> solver;
-  solver.computeDirect(sums.square.matrix() / sums.count - mean * mean.transpose());
-  const Vec3 spread = solver.eigenvalues();
+  const Patch patch(mean, sums.square.matrix() / sums.count, sums.count);
   const double max_variance = config.max_thickness_m * config.max_thickness_m;
-  if (!(spread[0] <= max_variance)) return false;
-  const double variance = std::max(spread[0], config.range_sigma_m * config.range_sigma_m);
-  if (variance > config.max_normal_sigma_rad * config.max_normal_sigma_rad * sums.count * spread[1])
+  if (!(patch.spread_m2[0] <= max_variance) ||
+      !patch.normal_is_known(config.max_normal_sigma_rad, config.range_sigma_m))
     return false;
-  const Vec3 normal = solver.eigenvectors().col(0).normalized();
+  const Vec3& normal = patch.normal;
   if (normal.dot(sums.chord_square.matrix() * normal) > 2.0 * max_variance * sums.count) return false;
   plane = {normal.cast<float>(), static_cast<float>(normal.dot(origin.cast<double>() + mean))};
   return true;

@@ -9,12 +9,14 @@
 
 namespace vsslam {
 
-PoseEdge loop_edge(const LoopRecord& record) {
+PoseEdge loop_edge(const LoopRecord& record, const PoseGraphConfig& graph) {
   PoseEdge edge;
   edge.from = record.match;
   edge.to = record.query;
   edge.T_from_to = record.T_match_query;
-  edge.information = Mat6::Identity() / record.edge_variance;
+  edge.information = record.planes
+                         ? record.planes->information(graph.odometry_variances(), record.edge_variance)
+                         : Mat6::Identity() / record.edge_variance;
   edge.is_loop = true;
   edge.cauchy_scale = record.cauchy_scale;
   return edge;

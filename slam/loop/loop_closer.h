@@ -13,6 +13,7 @@
 #include "core/stage_clock.h"
 #include "slam/graph/pose_graph.h"
 #include "slam/key_scan.h"
+#include "slam/lidar/degeneracy.h"
 #include "slam/loop/loop_config.h"
 #include "slam/loop/memory_decision.h"
 
@@ -38,12 +39,15 @@ struct LoopRecord {
   /// "accepted", "distance" (descriptors differ), "few_points", "not_converged", "fitness", "overlap",
   /// "gap" (too far from where odometry expects it).
   std::string why;
-  double edge_variance = 0;  ///< rad^2 and m^2, of an accepted loop
-  double cauchy_scale = 0;   ///< of the edge's robust kernel; 0: quadratic
+  std::optional<Degeneracy> planes;  ///< what the planes see of the pose, if the fit was refined to them
+  double edge_variance = 0;          ///< rad^2 and m^2, of an accepted loop
+  double cauchy_scale = 0;           ///< of the edge's robust kernel; 0: quadratic
 };
 
-/// The edge that an accepted record adds to the pose graph.
-PoseEdge loop_edge(const LoopRecord& record);
+/// The edge that an accepted record adds to the pose graph. A fit that was refined to planes measures as odometry's
+/// registration does and gets the covariance of an odometry edge in the directions that the planes see; the others,
+/// and a fit that was not refined, get `edge_variance`.
+PoseEdge loop_edge(const LoopRecord& record, const PoseGraphConfig& graph);
 
 /// What the descriptor database holds.
 struct StoredDescriptor {

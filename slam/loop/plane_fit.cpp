@@ -1,22 +1,19 @@
 #include "slam/loop/plane_fit.h"
 
-#include <Eigen/Eigenvalues>
-#include <algorithm>
 #include <optional>
 #include <vector>
 
 #include "slam/lidar/information.h"
+#include "slam/lidar/patch.h"
 
 namespace vsslam {
 
 namespace {
 
-/// Normal of the target about one of its points; none where its neighbours are no plane. The standard deviation of
-/// the normal is sigma / sqrt(count * spread along the shorter side), as for the planes of the odometry's map
-/// (PlaneMapConfig): what it feigns of a direction that no surface sees stays below a share of kNormalSigma_rad^2.
-std::optional<Vec3> normal_about(const Eigen::Vector3f& point, const IcpTarget& target) {
+/// Normal of the target about one of its points; none where its neighbours are no plane.
+std::optional<Vec3> normal_about(const Eigen::Vector3f& point, const IcpTarget& target,
+                                 const PlaneFitConfig& config) {
   constexpr int kNeighbours = 10;
-  constexpr double kNormalSigma_rad = 0.05, kRangeSigma_m = 0.007;
   const Cloud neighbours = target.nearest(point, kNeighbours);
   const auto count = static_cast<double>(neighbours.size());
   Vec3 mean = Vec3::Zero();
@@ -26,11 +23,9 @@ std::optional<Vec3> normal_about(const Eigen::Vector3f& point, const IcpTarget& 
     mean += offset / count;
     square += offset * offset.transpose() / count;
   }
-  const Eigen::SelfAdjointEigenSolver<Mat3> solver(square - mean * mean.transpose());
-  const Vec3 spread_m2 = solver.eigenvalues();  // ascending
-  const double sigma_m2 = std::max(spread_m2[0], kRangeSigma_m * kRangeSigma_m);
-  if (sigma_m2 > kNormalSigma_rad * kNormalSigma_rad * count * spread_m2[1]) return std::nullopt;
-  return Vec3(solver.eigenvectors().col(0));
+  const Patch patch(mean, square, count);
+  if (!patch.normal_is_known(config.max_normal_sigma_rad, config.range_sigma_m)) return std::nullopt;
+  return patch.normal;
 }
 
 /// The target point of a source point, and the normal there.
@@ -59,15 +54,16 @@ struct NormalEquations {
 
 /// Pairs of the source at T; `pairs` remembers those of the last time, since most keep their target.
 NormalEquations normal_equations(const Cloud& source, const IcpTarget& target, const SE3& T_target_source,
-                                 double max_pair_m, std::vector<Pair>& pairs) {
+                                 const PlaneFitConfig& config, std::vector<Pair>& pairs) {
   const Mat3 R_source_target = T_target_source.matrix3().transpose();
   NormalEquations sums;
   for (size_t i = 0; i < source.size(); ++i) {
     const Vec3 point_source = source[i].cast<double>(), point_target = T_target_source * point_source;
-    const int nearest = target.find(point_target.cast<float>(), static_cast<float>(max_pair_m)).nearest;
+    const int nearest =
+        target.find(point_target.cast<float>(), static_cast<float>(config.max_pair_m)).nearest;
     if (nearest < 0) continue;
     const Eigen::Vector3f& on_plane = target.points()[static_cast<size_t>(nearest)];
-    if (nearest != pairs[i].target) pairs[i] = {nearest, normal_about(on_plane, target)};
+    if (nearest != pairs[i].target) pairs[i] = {nearest, normal_about(on_plane, target, config)};
     if (!pairs[i].normal) continue;
     const Vec3 offset = point_target - on_plane.cast<double>();
     sums.add(point_source, R_source_target * *pairs[i].normal, pairs[i].normal->dot(offset));
@@ -83,14 +79,6 @@ Vec6 difference(const SE3& T_a_b, const SE3& T_a_c) {
   return between;
 }
 
-/// The part of a step that lies in the degenerate directions.
-Vec6 unseen_part(const Degeneracy& degeneracy, const Vec6& step) {
-  Vec6 scale = Vec6::Ones();
-  scale.head<3>().setConstant(degeneracy.characteristic_length_m);
-  const auto unseen = degeneracy.scaled_eigenvectors.leftCols(degeneracy.directions);
-  return (unseen * (unseen.transpose() * step.cwiseProduct(scale))).cwiseQuotient(scale);
-}
-
 }  // namespace
 
 PlaneFit fit_to_planes(const Cloud& source, const IcpTarget& target, const SE3& start,
@@ -99,14 +87,12 @@ PlaneFit fit_to_planes(const Cloud& source, const IcpTarget& target, const SE3& 
   fit.T_target_source = start;
   std::vector<Pair> pairs(source.size());
   while (!fit.converged && fit.iterations < config.max_iterations) {
-    const NormalEquations sums =
-        normal_equations(source, target, fit.T_target_source, config.max_pair_m, pairs);
+    const NormalEquations sums = normal_equations(source, target, fit.T_target_source, config, pairs);
     fit.pairs = sums.pairs;
     if (sums.pairs < config.min_pairs) break;
     fit.degeneracy = detect_degeneracy(sums.H, sums.pairs, config.degeneracy);
     // Unseen directions go to the expected pose, the others to the least squares given that.
-    const Vec6 unseen =
-        unseen_part(fit.degeneracy, difference(fit.T_target_source, T_target_source_expected));
+    const Vec6 unseen = fit.degeneracy.unseen_part(difference(fit.T_target_source, T_target_source_expected));
     const Vec6 step = unseen + fit.degeneracy.solve(sums.A, sums.b - sums.A * unseen);
     fit.T_target_source = fit.T_target_source * SE3::exp(step);
     ++fit.iterations;

@@ -16,6 +16,8 @@ struct PlaneFitConfig {
   int min_pairs = 50;       ///< fewer: the target has too few planes to fit to
   int max_iterations = 30;
   double step_translation_m = 1e-3, step_rotation_rad = 1.414e-3;  ///< converged below
+  double max_normal_sigma_rad = 0.05;  ///< of the target's planes, as in PlaneMapConfig
+  double range_sigma_m = 0.007;        ///< likewise
   DegeneracyConfig degeneracy;
 };
 

@@ -34,20 +34,22 @@ IcpResult fit(const Cloud& source, const IcpTarget& target, const SE3& guess, co
   return prefers_prediction(other, first, config.prediction_ratio) ? other : first;
 }
 
-/// Refines a fit where the target has planes; directions that they do not see take the prediction.
-void settle_on_planes(const Cloud& source, const IcpTarget& target, const SE3& predicted,
-                      const VerificationConfig& config, IcpResult& icp) {
+/// Refines a fit where the target has planes; directions that they do not see take the prediction. Nothing without
+/// planes.
+std::optional<Degeneracy> settle_on_planes(const Cloud& source, const IcpTarget& target, const SE3& predicted,
+                                           const VerificationConfig& config, IcpResult& icp) {
   const PlaneFitConfig planes{.max_pair_m = config.overlap_distance_m,
                               .min_pairs = config.min_source_points,
                               .step_translation_m = config.icp.step_translation_m,
                               .step_rotation_rad = config.icp.step_rotation_rad,
                               .degeneracy = {.min_share = config.min_plane_share}};
   const PlaneFit fit = fit_to_planes(source, target, icp.T_target_source, predicted, planes);
-  if (fit.iterations == 0) return;
+  if (fit.iterations == 0) return std::nullopt;
   icp.T_target_source = fit.T_target_source;
   icp.iterations += fit.iterations;
   icp.converged = fit.converged;
   score(source, target, config.icp.max_correspondence_m, config.overlap_distance_m, icp);
+  return fit.degeneracy;
 }
 
 /// Whether odometry can have drifted as far as the loop says.
@@ -79,7 +81,7 @@ void verify_loop(const std::vector<KeyScan>& keys, const SE3& T_base_lidar, cons
   const SE3 guess = meet(record.T_match_query, source_query, target->points(), config.centroid_guess_m);
   IcpResult icp = fit(source_query, *target, guess, record.T_match_query_predicted, config);
   if (config.min_plane_share > 0 && icp.converged)
-    settle_on_planes(source_query, *target, record.T_match_query_predicted, config, icp);
+    record.planes = settle_on_planes(source_query, *target, record.T_match_query_predicted, config, icp);
   record.icp_run = true;
   record.icp_converged = icp.converged;
   record.icp_iterations = icp.iterations;

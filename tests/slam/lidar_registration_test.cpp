@@ -133,6 +133,58 @@ TEST(Degeneracy, SolvesInTheObservedSubspaceOnly) {
   EXPECT_TRUE(found.observed_rotation().isApprox(Mat3::Identity(), 1e-9));
 }
 
+// A scene that leaves some directions of the pose open, oblique to the axes.
+Degeneracy oblique(int directions, double characteristic_length_m) {
+  const Mat6 random = Mat6::NullaryExpr([](Eigen::Index row, Eigen::Index column) {
+    return std::sin(1.0 + 5.0 * static_cast<double>(row) + 7.3 * static_cast<double>(column));
+  });
+  const Eigen::SelfAdjointEigenSolver<Mat6> basis(random * random.transpose());
+  Vec6 shares = Vec6::Constant(0.3);
+  shares.head(directions).setConstant(1e-4);
+  Vec6 scale = Vec6::Ones();
+  scale.head<3>().setConstant(characteristic_length_m);
+  const Mat6 scaled = basis.eigenvectors() * shares.asDiagonal() * basis.eigenvectors().transpose();
+  const Mat6 H = scale.asDiagonal() * scaled * scale.asDiagonal();
+  return detect_degeneracy(H, 1, {.min_share = 0.01, .characteristic_length_m = characteristic_length_m});
+}
+
+TEST(Degeneracy, UnseenPartAndSolutionShareTheStepBetweenThem) {
+  Vec6 step;
+  step << 0.01, -0.02, 0.03, 0.4, -0.5, 0.6;
+  for (int directions : {0, 2, 6}) {
+    const Degeneracy found = oblique(directions, 2.5);
+    ASSERT_EQ(found.directions, directions);
+    const Vec6 unseen = found.unseen_part(step);
+    EXPECT_LT((found.unseen_part(unseen) - unseen).norm(), 1e-12);
+    EXPECT_LT(found.unseen_part(step - unseen).norm(), 1e-12);
+    const Vec6 solved = found.solve(Mat6::Identity(), step);
+    EXPECT_LT(found.unseen_part(solved).norm(), 1e-12);
+  }
+}
+
+TEST(Degeneracy, InformationKeepsTheCovarianceOfWhatWasMeasured) {
+  Vec6 seen;
+  seen << Vec3::Constant(1e-6), Vec3::Constant(1e-4);
+  EXPECT_TRUE(oblique(0, 2.5).information(seen, 0.5).isApprox(Mat6(seen.cwiseInverse().asDiagonal()), 1e-9));
+
+  Vec6 scale = Vec6::Ones();
+  scale.head<3>().setConstant(2.5);
+  for (int directions : {1, 2, 6}) {
+    const Degeneracy found = oblique(directions, 2.5);
+    const Mat6 covariance = found.information(seen, 0.5).inverse();
+    // of the scaled pose, along the eigenvectors
+    const Mat6 along = found.scaled_eigenvectors.transpose() * scale.asDiagonal() * covariance *
+                       scale.asDiagonal() * found.scaled_eigenvectors;
+    const Mat6 measured = found.scaled_eigenvectors.transpose() * scale.asDiagonal() * seen.asDiagonal() *
+                          scale.asDiagonal() * found.scaled_eigenvectors;
+    const int kept = 6 - directions;
+    EXPECT_TRUE(along.topLeftCorner(directions, directions)
+                    .isApprox(0.5 * Eigen::MatrixXd::Identity(directions, directions), 1e-6));
+    EXPECT_LT((along.bottomRightCorner(kept, kept) - measured.bottomRightCorner(kept, kept)).norm(), 1e-9);
+    EXPECT_LT(along.topRightCorner(directions, kept).norm(), 1e-9);
+  }
+}
+
 TEST(Information, BlocksOfARoomAndOfAPlane) {
   Mat6 H = Mat6::Zero();
   H.diagonal() << 4, 9, 16, 1, 2, 10;

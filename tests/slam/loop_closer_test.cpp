@@ -38,8 +38,8 @@ TEST(LoopCloser, NearestOldKeyPoseIsTheCandidateOfLviSam) {
     ASSERT_TRUE(record.accepted) << record.why;
     EXPECT_LT(error_m(record, drive), 0.35);  // the local map smears by its own drift
     EXPECT_EQ(record.edge_variance, record.fitness_m2);
-    EXPECT_EQ(loop_edge(record).cauchy_scale, 0);
-    EXPECT_EQ(loop_edge(record).information, Mat6(Mat6::Identity() / record.fitness_m2));
+    EXPECT_EQ(loop_edge(record, {}).cauchy_scale, 0);
+    EXPECT_EQ(loop_edge(record, {}).information, Mat6(Mat6::Identity() / record.fitness_m2));
   }
   EXPECT_TRUE(closer.stored().empty());
   EXPECT_GT(closer.database_size(drive.keys).database_bytes, 0u);
@@ -70,9 +70,22 @@ TEST(LoopCloser, ScanContextClosesLoopsAgainstTheDirectionOfTravel) {
       EXPECT_GT(record.overlap, 0.8);
     }
     EXPECT_EQ(record.edge_variance, 0.5);
-    EXPECT_EQ(loop_edge(record).cauchy_scale, 1);
+    EXPECT_EQ(loop_edge(record, {}).cauchy_scale, 1);
   }
   EXPECT_GT(against, 10);
+}
+
+TEST(LoopCloser, ARefinedEdgeWeighsAsOdometryWhereThePlanesSeeIt) {
+  LoopRecord record;
+  record.edge_variance = 0.5;
+  record.planes.emplace().directions = 1;
+  record.planes->scaled_eigenvectors.setIdentity();
+  record.planes->scaled_eigenvectors.col(0).swap(record.planes->scaled_eigenvectors.col(3));  // unseen: x
+  const PoseGraphConfig graph{.odometry_rotation_variance_rad2 = 1e-6,
+                              .odometry_translation_variance_m2 = 1e-4};
+  Vec6 expected;
+  expected << 1e6, 1e6, 1e6, 2, 1e4, 1e4;
+  EXPECT_TRUE(loop_edge(record, graph).information.isApprox(Mat6(expected.asDiagonal()), 1e-12));
 }
 
 TEST(LoopCloser, AsPublishedStartsFromIdentityAndMissesTheTurn) {

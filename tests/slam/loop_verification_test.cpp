@@ -82,6 +82,9 @@ Vec2 errors_before_the_end_of_the_map_m(double min_plane_share) {
   record.T_match_query_predicted = SE3(Quat::Identity(), {0.05, -0.1, 0}) * truth;
   verify_loop(keys, SE3(), config, maps, record);
   EXPECT_TRUE(record.accepted) << record.why;
+  EXPECT_EQ(record.planes.has_value(), min_plane_share > 0);
+  // Along the corridor; and its height, without a floor.
+  EXPECT_EQ(record.planes.value_or(Degeneracy{.directions = 2}).directions, 2);
   return (record.T_match_query.translation - truth.translation).head<2>();
 }
 
