@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <vector>
 
 namespace vsslam {
@@ -50,7 +51,8 @@ struct Placement {
   }
 };
 
-// The world's meshes as static bodies. Shapes are shared where objects share a mesh and its scale.
+// The world's meshes as static bodies. Shapes are shared where objects share a mesh and its scale. Bullet visits
+// all bodies in each step, so it knows only those near the robot.
 class Obstacles {
  public:
   Obstacles(const World& world, btDiscreteDynamicsWorld& dynamics) : dynamics_(dynamics) {
@@ -66,12 +68,11 @@ class Obstacles {
       body.bullet->setWorldTransform(placement.T_world_object);
       body.bullet->setFriction(0.3);
       body.bullet->setUserIndex(static_cast<int>(i));
-      add(body);
+      body.exists = true;
     }
   }
   ~Obstacles() {
-    for (Body& body : bodies_)
-      if (body.present) dynamics_.removeRigidBody(body.bullet.get());
+    for (Body& body : bodies_) make_known(body, false);
   }
   Obstacles(const Obstacles&) = delete;
   Obstacles& operator=(const Obstacles&) = delete;
@@ -79,16 +80,25 @@ class Obstacles {
   void place(int object, const Eigen::Affine3d& T_world_object, bool present) {
     Body& body = bodies_.at(static_cast<size_t>(object));
     if (!body.bullet) return;
-    if (body.present) dynamics_.removeRigidBody(body.bullet.get());
-    body.present = false;
+    make_known(body, false);  // Bullet expects static bodies to stay
     body.bullet->setWorldTransform(Placement(T_world_object).T_world_object);
-    if (present) add(body);
+    body.exists = present;
+    if (robot_world_) choose(body);
+  }
+
+  /// To be called before each step: the bodies around the robot become known to Bullet, those left behind unknown.
+  void follow(const Vec3& robot_world) {
+    constexpr double kStride_m = 1.0;  // how far the robot may move before they are looked at anew
+    if (robot_world_ && (robot_world - *robot_world_).squaredNorm() < kStride_m * kStride_m) return;
+    robot_world_ = robot_world;
+    for (Body& body : bodies_) choose(body);
   }
 
  private:
   struct Body {
-    std::unique_ptr<btRigidBody> bullet;
-    bool present = false;
+    std::unique_ptr<btRigidBody> bullet;  // none: never collides
+    bool exists = false;                  // in the world at this time
+    bool known = false;                   // to Bullet
   };
   struct Shape {
     int mesh;
@@ -97,9 +107,21 @@ class Obstacles {
     std::unique_ptr<btBvhTriangleMeshShape> bullet;
   };
 
-  void add(Body& body) {
-    dynamics_.addRigidBody(body.bullet.get(), kMeshBit, kOutlineBit);
-    body.present = true;
+  void choose(Body& body) { make_known(body, body.exists && near(*body.bullet, *robot_world_)); }
+
+  void make_known(Body& body, bool known) {
+    if (known && !body.known) dynamics_.addRigidBody(body.bullet.get(), kMeshBit, kOutlineBit);
+    if (!known && body.known) dynamics_.removeRigidBody(body.bullet.get());
+    body.known = known;
+  }
+
+  static bool near(const btRigidBody& body, const Vec3& robot_world) {
+    constexpr double kNear_m = 5.0;  // the robot's reach, a stride and more
+    btVector3 low, high;
+    body.getCollisionShape()->getAabb(body.getWorldTransform(), low, high);
+    const Vec3 outside =
+        (to_eigen(low) - robot_world).cwiseMax(robot_world - to_eigen(high)).cwiseMax(Vec3::Zero());
+    return outside.squaredNorm() < kNear_m * kNear_m;
   }
 
   btCollisionShape* shape_of(const World& world, int mesh, const Mat3& stretch) {
@@ -122,7 +144,8 @@ class Obstacles {
 
   btDiscreteDynamicsWorld& dynamics_;
   std::multimap<int, Shape> shapes_of_mesh_;
-  std::vector<Body> bodies_;  // one per object of the world; those that never collide have no bullet
+  std::vector<Body> bodies_;         // one per object of the world
+  std::optional<Vec3> robot_world_;  // where the known bodies were last chosen
 };
 
 }  // namespace
@@ -327,6 +350,7 @@ void Dynamics::step(const Sides& wheel_radps, const Sides& friction_scale) {
   if (impl_->stands(wheel_radps, friction_scale)) return;
   for (int i : {kFrontLeft, kRearLeft}) impl_->drive(i, wheel_radps.left, friction_scale.left);
   for (int i : {kFrontRight, kRearRight}) impl_->drive(i, wheel_radps.right, friction_scale.right);
+  impl_->obstacles->follow(impl_->state.T_world_base.translation);
   impl_->bullet.stepSimulation(Impl::kStep_s, 0);
   impl_->read_state();
   impl_->find_touched();

@@ -183,6 +183,24 @@ TEST(Dynamics, TouchesMeshesButNotTheFloor) {
   EXPECT_NEAR(dynamics.state().T_world_base.translation.x(), 2 - 0.5 * ScoutConfig{}.hull_length_m, 0.005);
 }
 
+TEST(Dynamics, WhatIsFarAtTheStartIsThereWhenTheRobotIs) {
+  World world = plane_world();
+  const int wall = add_box(world, "wall", {12, -1, 0}, {12.1f, 1, 1}),
+            door = add_box(world, "door", {8, -1, 0}, {8.1f, 1, 1});
+  Dynamics dynamics(world, {}, 0, 0, 0);
+  const auto drive_into_something = [&] {
+    for (int steps = 0; steps < 30000 && dynamics.touched_object() < 0; ++steps)
+      dynamics.step({std::min(1.0, 0.002 * steps) * 5, std::min(1.0, 0.002 * steps) * 5}, {1, 1});
+    return dynamics.touched_object();
+  };
+  EXPECT_EQ(drive_into_something(), door);
+  dynamics.set_object_pose(door, Eigen::Affine3d::Identity(), false);
+  dynamics.step({}, {1, 1});
+  EXPECT_EQ(drive_into_something(), wall);
+  EXPECT_NEAR(dynamics.state().T_world_base.translation.x(), 12 - 0.5 * ScoutConfig{}.hull_length_m,
+              0.05);  // a little askew after the door
+}
+
 TEST(Dynamics, ObjectsAreWhereTheirPlacementSays) {
   World world = plane_world();
   const int box = add_box(world, "box", {-0.5f, -0.5f, 0}, {0.5f, 0.5f, 1});
