@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "core/ordered_parallel.h"
+#include "sensors/camera_blur.h"
 #include "sensors/camera_flow.h"
 
 namespace vsslam {
@@ -141,15 +142,22 @@ double Camera::take_one(const Shot& shot, Workshop& workshop, CameraMeasurement&
   return mean_grey;
 }
 
-// How many instants, so that the flow between them stays below the spacing.
-int Camera::blur_views(const Shot& shot, Workshop& workshop) const {
-  if (!config_.motion_blur) return 1;
-  const SE3 T_world_begin = shot.T_world_camera(0.0), T_world_end = shot.T_world_camera(1.0);
-  shot.source(T_world_begin, coarse_rays_, workshop.coarse);
-  const double flow_px = length_of_most(
-      flow(optics_, coarse_rays_, workshop.coarse.depth_m, T_world_end.inverse() * T_world_begin));
-  return static_cast<int>(std::clamp(std::ceil(flow_px / config_.blur_spacing_px), 1.0,
-                                     static_cast<double>(config_.max_blur_views)));
+// From one share of the exposure to another: where what the first pose sees is in the second.
+SE3 Camera::Shot::T_later_earlier(double later, double earlier) const {
+  return T_world_camera(later).inverse() * T_world_camera(earlier);
+}
+
+// How far most of the image flows during the exposure.
+double Camera::coarse_flow_px(const Shot& shot, Workshop& workshop) const {
+  if (!config_.motion_blur) return 0;
+  shot.source(shot.T_world_camera(0.0), coarse_rays_, workshop.coarse);
+  return length_of_most(flow(optics_, coarse_rays_, workshop.coarse.depth_m, shot.T_later_earlier(1.0, 0.0)));
+}
+
+// As many views as keep the flow between them below its limit.
+int Camera::blur_views(double flow_px) const {
+  const double views = std::ceil(flow_px / config_.blur_view_spacing_px);
+  return static_cast<int>(std::clamp(views, 1.0, static_cast<double>(config_.max_blur_views)));
 }
 
 void Camera::gather_light(const Shot& shot, Workshop& workshop) const {
@@ -163,14 +171,20 @@ void Camera::gather_light(const Shot& shot, Workshop& workshop) const {
     light.assign(centre_rays_.direction_camera.size(), static_cast<float>(share * mean));
     return;
   }
-  const int views = std::max(blur_views(shot, workshop), config_.samples_per_pixel);
+  const double flow_px = coarse_flow_px(shot, workshop);
+  const int views = std::max(blur_views(flow_px), config_.samples_per_pixel);
+  const bool smeared = flow_px > config_.blur_spacing_px * views;
+  light.assign(centre_rays_.direction_camera.size(), 0.0f);
   for (int k = 0; k < views; ++k) {
     const auto sample = static_cast<size_t>(k % config_.samples_per_pixel);
     const ViewRays& rays = sample_rays_.empty() ? centre_rays_ : sample_rays_[sample];
     const double share = config_.motion_blur ? (k + 0.5) / views : 0.5;
     shot.source(shot.T_world_camera(share), rays, workshop.view);
-    if (k == 0)
-      light = workshop.view.luminance;
+    if (smeared)
+      add_smeared(workshop.view, config_.width_px,
+                  flow(optics_, rays, workshop.view.depth_m,
+                       shot.T_later_earlier((k + 1.0) / views, static_cast<double>(k) / views)),
+                  static_cast<float>(config_.blur_spacing_px), light);
     else
       for (size_t i = 0; i < light.size(); ++i) light[i] += workshop.view.luminance[i];
   }

@@ -1,8 +1,9 @@
 // A camera on the robot: when it exposes, what it then sees, and what it makes of that.
 //
 // Frame `camera`: x right, y down, z forward. Global shutter. Stamps are the middle of the exposure, at the rate of the
-// camera's clock whatever the exposure time. Motion blur is the mean of views at instants spread evenly over the
-// exposure, as many as keep the flow between neighbours below `blur_spacing_px`.
+// camera's clock whatever the exposure time. Motion blur is the mean over instants spread evenly over the exposure, as
+// many as keep the flow between neighbours below `blur_spacing_px`. One view per `blur_view_spacing_px` of flow is
+// rendered; instants between them move its pixels along their flow (camera_blur.h).
 #pragma once
 
 #include <functional>
@@ -63,6 +64,7 @@ class Camera {
     SE3 T_world_camera(Time t) const { return trajectory.pose(t) * T_base_camera; }
     /// At a share of the exposure, 0 .. 1.
     SE3 T_world_camera(double share) const;
+    SE3 T_later_earlier(double later, double earlier) const;
   };
   /// Memory of one image in the making, kept for the next.
   struct Workshop {
@@ -75,7 +77,8 @@ class Camera {
   double transmission(Time stamp) const;
   double take_one(const Shot& shot, Workshop& workshop,
                   CameraMeasurement& out) const;  // returns the mean grey
-  int blur_views(const Shot& shot, Workshop& workshop) const;
+  double coarse_flow_px(const Shot& shot, Workshop& workshop) const;
+  int blur_views(double flow_px) const;
   void gather_light(const Shot& shot, Workshop& workshop) const;
   void add_truth(const Shot& shot, Workshop& workshop, CameraMeasurement& out) const;
 

@@ -40,6 +40,7 @@ void CameraConfig::fields(Fields& f) {
   f("auto_exposure", auto_exposure);
   f("motion_blur", motion_blur);
   f("blur_spacing_px", blur_spacing_px, positive());
+  f("blur_view_spacing_px", blur_view_spacing_px, positive());
   f("max_blur_views", max_blur_views, between(1, 64));
   f("samples_per_pixel", samples_per_pixel, between(1, 64));
   f("sensitivity_e_per_cdm2_ms", sensitivity_e_per_cdm2_ms, positive());

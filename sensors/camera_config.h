@@ -40,9 +40,10 @@ struct CameraConfig {
   double exposure_s = 0.003, gain = 12;  ///< fixed, or where auto exposure begins
   AutoExposureConfig auto_exposure;
   bool motion_blur = true;
-  double blur_spacing_px = 1;  ///< largest flow between the instants that are averaged, in 95 % of the image
-  int max_blur_views = 8;
-  int samples_per_pixel = 1;  ///< rays that share a pixel's area: smoother edges at a price in time
+  double blur_spacing_px = 1;       ///< largest flow between the instants that are averaged
+  double blur_view_spacing_px = 4;  ///< between those that are rendered, in 95 % of the image
+  int max_blur_views = 8;           ///< rendered at most
+  int samples_per_pixel = 1;        ///< rays that share a pixel's area: smoother edges at a price in time
 
   double sensitivity_e_per_cdm2_ms = 9;  ///< electrons of a pixel on the axis that sees 1 cd/m^2 for 1 ms
   double full_well_e = 6500;             ///< electrons that a pixel holds, and of grey 255 at gain 1

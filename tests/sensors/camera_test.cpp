@@ -185,13 +185,50 @@ TEST(Camera, TakesAsManyViewsAsTheFlowDemands) {
         shapes::along([&](double t) { return SE3(Quat::Identity(), Vec3(speed_mps * t, 0, 0)); }, 0.2));
     return views.load();
   };
+  config.blur_view_spacing_px = 2;
   EXPECT_EQ(views_at(0), 1);
-  EXPECT_EQ(views_at(1.0), 1);   // 0.96 px
-  EXPECT_EQ(views_at(1.1), 2);   // 1.06 px
-  EXPECT_EQ(views_at(4.0), 4);   // 3.84 px
-  EXPECT_EQ(views_at(20.0), 8);  // 19 px: the most
+  EXPECT_EQ(views_at(2.0), 1);   // 1.92 px
+  EXPECT_EQ(views_at(2.2), 2);   // 2.11 px
+  EXPECT_EQ(views_at(8.0), 4);   // 7.68 px
+  EXPECT_EQ(views_at(40.0), 8);  // 38 px: the most
   config.motion_blur = false;
-  EXPECT_EQ(views_at(20.0), 1);
+  EXPECT_EQ(views_at(40.0), 1);
+}
+
+// A textured wall, passed and turned away from fast, with instants between few views and with nothing but views.
+TEST(Camera, InstantsBetweenViewsAreAsGoodAsViews) {
+  CameraConfig config = views::small_ideal();
+  config.exposure_s = 0.01, config.gain = 1;
+  config.motion_blur = true;
+  config.blur_spacing_px = 0.5;
+  const ViewSource wall = views::plane(
+      1.5, [](double x, double y) { return 80 + 60 * std::sin(20 * x + 5 * y) * std::cos(14 * y - 3 * x); });
+  const Trajectory drive = shapes::along(
+      [](double t) {
+        return SE3::from_rpy({0.5 * t, 3 * t, 2 * t}, {3 * t, -t, 2 * t});
+      },
+      0.2);
+  const auto image = [&](double view_spacing_px, int most) {
+    config.blur_view_spacing_px = view_spacing_px;
+    config.max_blur_views = most;
+    return views::film(config, 2, wall, drive).at(1).frame.grey;
+  };
+  const std::vector<uint8_t> truth = image(0.1, 64), few = image(4, 8);
+  config.motion_blur = false;
+  const std::vector<uint8_t> sharp = image(4, 8);
+  // Away from the edge of the image, beyond which a view does not see.
+  int worst = 0;
+  double blurred = 0, off = 0;
+  for (size_t y = 8; y < 112; ++y)
+    for (size_t x = 8; x < 152; ++x) {
+      const size_t i = y * 160 + x;
+      worst = std::max(worst, std::abs(few[i] - truth[i]));
+      off += std::abs(few[i] - truth[i]);
+      blurred += std::abs(sharp[i] - truth[i]);
+    }
+  EXPECT_GT(blurred / (104 * 144), 3);
+  EXPECT_LT(off / (104 * 144), 0.3);
+  EXPECT_LE(worst, 2);
 }
 
 TEST(Camera, TruthIsCleanDeepAndFlows) {
