@@ -85,6 +85,15 @@ void decide_orientation(ExportPlan& plan) {
   plan.notes.push_back(fmt::format("{} needs the IMU's orientation: it is enabled", plan.system->title));
 }
 
+void decide_imu_mount(ExportPlan& plan) {
+  if (plan.system == nullptr || !plan.system->imu_rpy_deg) return;
+  Vec3& rpy_deg = plan.facts.scenario.rig.mounts.imu.rpy_deg;
+  if (rpy_deg == *plan.system->imu_rpy_deg) return;
+  rpy_deg = *plan.system->imu_rpy_deg;
+  plan.notes.push_back(fmt::format("{} works with one mount of the IMU only: rpy_deg is [{}, {}, {}]",
+                                   plan.system->title, rpy_deg.x(), rpy_deg.y(), rpy_deg.z()));
+}
+
 bool has_messages(const ExportPlan& plan) {
   return plan.has(DatasetFormat::bag) || plan.has(DatasetFormat::mcap);
 }
@@ -175,6 +184,7 @@ ExportPlan plan_export(const ExportRequest& request) {
     plan.notes.emplace_back("there is no estimator in an export: the robot drives by its true pose");
   decide_camera(plan, extras);
   decide_orientation(plan);
+  decide_imu_mount(plan);
   plan.facts.rig = calibration_of(scenario);
   if (plan.system != nullptr) plan.facts.names = plan.system->names;
   const std::string name =

@@ -32,10 +32,10 @@ std::vector<ExtraFile> configuration(const DatasetFacts& facts) {
           "  poseCovThreshold: 25.0\n\n"
           "  savePCD: false\n  savePCDDirectory: \"/Downloads/LOAM/\"\n\n  sensor: velodyne\n",
           facts.names.points, facts.names.imu, facts.names.lidar_frame, facts.names.lidar_frame) +
-      loam_sensor_settings(facts) +
+      loam_sensor_settings(facts, ExtrinsicRpy::imu_to_lidar) +
       fmt::format("  lidarMinRange: {}\n  lidarMaxRange: {}\n  imuRPYWeight: 0.01\n\n",
                   real_text(facts.rig.lidar.min_range_m), real_text(facts.rig.lidar.max_range_m)) +
-      loam_mapping_settings();
+      loam_mapping_settings(facts);
   return {{"lio_sam/params.yaml", text}};
 }
 

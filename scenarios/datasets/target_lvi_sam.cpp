@@ -27,7 +27,7 @@ std::string lidar_file(const DatasetFacts& facts) {
              "  useImuHeadingInitialization: true\n\n  savePCD: false\n  savePCDDirectory: "
              "\"/Downloads/LOAM/\"\n\n",
              facts.names.points, facts.names.imu) +
-         loam_sensor_settings(facts) + loam_mapping_settings();
+         loam_sensor_settings(facts, ExtrinsicRpy::lidar_to_imu) + loam_mapping_settings(facts);
 }
 
 // Points go from the LiDAR into a frame in the camera that has the axes of a robot: x forward, y left, z up.
@@ -99,16 +99,19 @@ std::string instructions(const DatasetFacts& facts) {
       "start\n\n"
       "    roslaunch lvi_sam run.launch\n"
       "    rosbag play {}.bag\n\n"
-      "Its LiDAR half fixes the IMU at the LiDAR's axes by `extrinsicRot`; its pose is the LiDAR's, "
-      "`truth.tum` is the "
-      "base's.\n",
+      "Its visual half takes for granted that the IMU is mounted as its authors' is, x back, y left, z down, "
+      "and so it is in "
+      "this dataset. Its pose is the LiDAR's, `truth.tum` is the base's.\n",
       facts.scenario.name);
 }
 
 }  // namespace
 
 TargetSystem lvi_sam() {
-  return {"lvi-sam", "LVI-SAM", DatasetFormat::bag, true, true, names(), configuration, instructions};
+  // q_lidar_to_cam in its visual_estimator/initial/initial_alignment.h is a number.
+  const Vec3 imu_rpy_deg(0, 180, 0);
+  return {"lvi-sam", "LVI-SAM",     DatasetFormat::bag, true,       true,
+          names(),   configuration, instructions,       imu_rpy_deg};
 }
 
 }  // namespace vsslam

@@ -58,7 +58,9 @@ std::string instructions(const DatasetFacts& facts) {
       "and after the "
       "last of them. The pose is the IMU's; `mav0/state_groundtruth_estimate0` is too, `truth.tum` is the "
       "base's. "
-      "Monocular-inertial initialisation needs motion that a robot on a plane hardly makes.\n",
+      "`./vsslam evaluate` takes its "
+      "trajectory with stamps in ns as it is. Monocular-inertial initialisation needs motion that a robot on "
+      "a plane hardly makes.\n",
       facts.scenario.name);
 }
 

@@ -2,6 +2,7 @@
 // rig's true numbers in it.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -32,6 +33,8 @@ struct TargetSystem {
   std::vector<ExtraFile> (*configuration)(const DatasetFacts& facts);
   /// Markdown: how to start it on the dataset, which lies in the current folder.
   std::string (*instructions)(const DatasetFacts& facts);
+  std::optional<Vec3> imu_rpy_deg =
+      std::nullopt;  ///< the only mount of the IMU in the base that its code allows
 };
 
 const std::vector<TargetSystem>& target_systems();

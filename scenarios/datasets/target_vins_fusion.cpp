@@ -24,7 +24,7 @@ std::string main_file(const DatasetFacts& facts) {
       "%YAML:1.0\n\n# VINS-Fusion's parameters for this dataset: numbers of the simulated rig, settings as "
       "its authors "
       "ship them.\nimu: 1\nnum_of_cam: 1\n\nimu_topic: \"{}\"\nimage0_topic: \"{}\"\noutput_path: "
-      "\"~/output/\"\n\n"
+      "\"/tmp/\"\n\n"
       "cam0_calib: \"cam0_pinhole.yaml\"\nimage_width: {}\nimage_height: {}\n\n"
       "# T_imu_camera: camera coordinates to IMU coordinates, exact.\nestimate_extrinsic: 0\n"
       "body_T_cam0: !!opencv-matrix\n   rows: 4\n   cols: 4\n   dt: d\n   data: [{}]\n\n"
@@ -35,7 +35,7 @@ std::string main_file(const DatasetFacts& facts) {
       "likewise.\n"
       "acc_n: {}\ngyr_n: {}\nacc_w: {}\ngyr_w: {}\ng_norm: {}\n\n"
       "# The stamps of images are exact (middle of the exposure).\nestimate_td: 0\ntd: 0.0\n\n"
-      "load_previous_pose_graph: 0\npose_graph_save_path: \"~/output/pose_graph/\"\nsave_image: 0\n",
+      "load_previous_pose_graph: 0\npose_graph_save_path: \"/tmp/\"\nsave_image: 0\n",
       facts.names.imu, facts.names.image, c.width_px, c.height_px,
       matrix_text(imu.T_base_imu.inverse() * c.T_base_camera, "          "),
       real_text(per_sample(imu.accel_noise_mps2_rthz, imu.rate_hz)),
@@ -63,7 +63,8 @@ std::string instructions(const DatasetFacts& facts) {
       "    rosrun vins vins_node $PWD/vins_fusion/mono_imu_config.yaml\n"
       "    rosrun loop_fusion loop_fusion_node $PWD/vins_fusion/mono_imu_config.yaml    # optional\n"
       "    rosbag play {}.bag\n\n"
-      "One camera and an IMU need some excitation before scale is known; a robot that rests and then drives "
+      "It writes `/tmp/vio.csv` (it neither makes folders nor knows `~`). One camera and an IMU need some "
+      "excitation before scale is known; a robot that rests and then drives "
       "straight "
       "gives little. The pose is the IMU's; `truth.tum` is the base's, `T_base_imu` in `rig.yaml`.\n",
       facts.scenario.name);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <optional>
 
@@ -16,6 +17,17 @@ namespace {
 
 constexpr std::string_view kBlank = " \t\r";
 constexpr double kLargestCoordinate_m = 1e9;
+
+/// ORB-SLAM3 writes stamps in whole nanoseconds, with or without zeros behind a point. No seconds since 1970 are as
+/// many, and parse_seconds() takes none of them.
+std::optional<Time> parse_nanoseconds(std::string_view text) {
+  const size_t point = std::min(text.find('.'), text.size());
+  int64_t ns = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + point, ns);
+  if (error != std::errc() || end != text.data() + point) return std::nullopt;
+  if (text.find_first_not_of('0', std::min(point + 1, text.size())) != text.npos) return std::nullopt;
+  return ns < 100'000'000'000'000'000 ? std::nullopt : std::optional(Time{ns});
+}
 
 /// Lines that are neither empty nor comments, cut at blanks.
 class Lines {
@@ -51,9 +63,10 @@ class Lines {
     return value;
   }
   Time stamp(size_t column) const {
-    const auto value = parse_seconds(words_[column]);
-    if (!value) fail(fmt::format("column {}: expected seconds, found \"{}\"", column + 1, words_[column]));
-    return *value;
+    if (const auto seconds = parse_seconds(words_[column])) return *seconds;
+    if (const auto nanoseconds = parse_nanoseconds(words_[column])) return *nanoseconds;
+    fail(fmt::format("column {}: expected seconds (or ns since 1970), found \"{}\"", column + 1,
+                     words_[column]));
   }
   [[noreturn]] void fail(std::string_view what) const {
     throw InputError(fmt::format("{}:{}: {}", name_, line_, what));

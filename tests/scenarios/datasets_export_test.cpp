@@ -279,6 +279,11 @@ TEST(Export, SystemsDecideAboutTheCamera) {
                                        .system = "lvi-sam"});
   EXPECT_TRUE(gyro.facts.scenario.rig.sensors.imu.orientation);
   EXPECT_THAT(gyro.notes, ::testing::Contains(HasSubstr("needs the IMU's orientation")));
+  // LVI-SAM's code knows one mount of the IMU: x back, y left, z down.
+  EXPECT_THAT(gyro.notes,
+              ::testing::Contains(HasSubstr("one mount of the IMU only: rpy_deg is [0, 180, 0]")));
+  EXPECT_TRUE(gyro.facts.rig.imu.T_base_imu.matrix3().isApprox(Mat3(Vec3(-1, 1, -1).asDiagonal()), 1e-12));
+  EXPECT_TRUE(plan("lio-sam").facts.rig.imu.T_base_imu.matrix3().isIdentity());
   EXPECT_EQ(plan("orb-slam3").formats, std::vector{DatasetFormat::euroc});
 }
 

@@ -69,12 +69,14 @@ class Systems : public ::testing::Test {
   const SE3 T_imu_camera = rig.imu.T_base_imu.inverse() * rig.camera.T_base_camera;
 };
 
-// A vector that the IMU measures, turned by extrinsicRot, is the LiDAR's; an orientation of the IMU times extrinsicRPY
-// is the LiDAR's.
+// A vector that the IMU measures, turned by extrinsicRot, is the LiDAR's; an orientation of the IMU times the inverse of
+// extrinsicRPY is the LiDAR's.
 TEST_F(Systems, LioSamTurnsImuIntoLidar) {
   const YAML::Node p = config("lio-sam", "lio_sam/params.yaml", facts("lio-sam"))["lio_sam"];
   expect_rotation(p["extrinsicRot"], T_lidar_imu.matrix3());
-  expect_rotation(p["extrinsicRPY"], T_lidar_imu.matrix3().transpose());
+  expect_rotation(p["extrinsicRPY"], T_lidar_imu.matrix3());
+  EXPECT_EQ(p["mappingCornerLeafSize"].as<double>(), 0.1);
+  EXPECT_EQ(p["mappingSurfLeafSize"].as<double>(), 0.2);
   expect_vector(p["extrinsicTrans"], T_lidar_imu.translation);
   EXPECT_EQ(p["pointCloudTopic"].as<std::string>(), "/points_raw");
   EXPECT_EQ(p["imuTopic"].as<std::string>(), "/imu_raw");
@@ -88,6 +90,7 @@ TEST_F(Systems, LioSamTurnsImuIntoLidar) {
 TEST_F(Systems, LviSamKnowsLidarImuAndCamera) {
   const YAML::Node lidar = config("lvi-sam", "lvi_sam/params_lidar.yaml", facts("lvi-sam"))["lvi_sam"];
   expect_rotation(lidar["extrinsicRot"], T_lidar_imu.matrix3());
+  expect_rotation(lidar["extrinsicRPY"], T_lidar_imu.matrix3().transpose());  // taken as it is
   EXPECT_EQ(lidar["timeField"].as<std::string>(), "time");
   const YAML::Node camera = config("lvi-sam", "lvi_sam/params_camera.yaml", facts("lvi-sam"));
   expect_rotation(camera["extrinsicRotation"]["data"], T_imu_camera.matrix3());
@@ -163,6 +166,10 @@ TEST_F(Systems, OrbSlam3HasTheCameraInTheBodyAndRealNumbersWithPoints) {
 TEST_F(Systems, KissIcpAndEvalioNameTopicAndRanges) {
   const YAML::Node p = config("kiss-icp", "kiss_icp.yaml", facts("kiss-icp"));
   EXPECT_EQ(p["data"]["max_range"].as<double>(), rig.lidar.max_range_m);
+  EXPECT_EQ(p["mapping"]["voxel_size"].as<double>(), 0.5);
+  DatasetFacts outdoors = facts("kiss-icp");
+  outdoors.scenario.slam.odometry.voxel_m = 0.4;
+  EXPECT_EQ(config("kiss-icp", "kiss_icp.yaml", outdoors)["mapping"]["voxel_size"].as<double>(), 1.0);
   EXPECT_THAT(target_system("kiss-icp").instructions(facts("kiss-icp")),
               HasSubstr("/velodyne_points askew.bag"));
   const std::string python = file_of("evalio", "vsslam_dataset.py", facts("evalio"));

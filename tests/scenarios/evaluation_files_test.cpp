@@ -47,6 +47,13 @@ TEST(Tum, ReadsCommentsBlankLinesAndExactStamps) {
   EXPECT_EQ(trajectory[1].pose.rotation.z(), 1);
 }
 
+TEST(Tum, ReadsStampsInNanoseconds) {
+  const PoseTrajectory trajectory =
+      parse_tum("1700000000123456789.000000 1 2 3 0 0 0 1\n1700000000223456789 1 0 0 0 0 0 1\n", "x.tum");
+  EXPECT_EQ(trajectory[0].stamp.ns, 1'700'000'000'123'456'789);
+  EXPECT_EQ(trajectory[1].stamp.ns, 1'700'000'000'223'456'789);
+}
+
 TEST(Tum, ErrorsHaveAPlace) {
   const std::string good = "0 0 0 0 0 0 0 1\n";
   EXPECT_THAT(tum_error(good + "1 0 0 0 0 0 1\n"), HasSubstr("x.tum:2: 7 columns, expected 8"));
@@ -57,6 +64,8 @@ TEST(Tum, ErrorsHaveAPlace) {
   EXPECT_THAT(tum_error(good + "0 0 0 0 0 0 0 1\n"), HasSubstr("x.tum:2: stamp 0.000000000 is not after"));
   EXPECT_THAT(tum_error(good + "1 0 0 0 0 0 0 0\n"), HasSubstr("x.tum:2: quaternion of length 0"));
   EXPECT_THAT(tum_error(good + "1 0 0 0 0 0 0 2\n"), HasSubstr("quaternion of length 2"));
+  EXPECT_THAT(tum_error(good + "1e18 0 0 0 0 0 0 1\n"), HasSubstr("x.tum:2: column 1: expected seconds"));
+  EXPECT_THAT(tum_error(good + "1700000000000000000.5 0 0 0 0 0 0 1\n"), HasSubstr("column 1"));
   EXPECT_THAT(tum_error(good + "1e300 0 0 0 0 0 0 1\n"), HasSubstr("x.tum:2: column 1: expected seconds"));
   EXPECT_THAT(tum_error(good + "1 1e300 0 0 0 0 0 1\n"), HasSubstr("absurd"));
   EXPECT_THAT(tum_error("# nothing\n"), HasSubstr("x.tum: no pose"));
