@@ -1,7 +1,6 @@
 #include "sensors/camera_flow.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace vsslam {
@@ -12,12 +11,14 @@ std::vector<Vec2f> flow(const CameraOptics& optics, const ViewRays& rays, const 
   const Mat3 R_b_a = T_b_a.matrix3();
   std::vector<Vec2f> flow_px(depth_m.size(), behind);
   for (size_t i = 0; i < depth_m.size(); ++i) {
+    const Vec3f& ray = rays.direction_camera[i];
+    if (!(ray.z() > 0)) continue;
+    const Vec3 ray_a(static_cast<double>(ray.x() / ray.z()), static_cast<double>(ray.y() / ray.z()), 1);
     // The point over its depth, so that infinity needs no case of its own.
-    const Vec3 ray_a = rays.direction_camera[i].cast<double>();
     const double inverse_depth = 1 / static_cast<double>(depth_m[i]);
-    const Vec3 ray_b = R_b_a * (ray_a / ray_a.z()) + inverse_depth * T_b_a.translation;
-    const std::optional<Vec2> from = optics.project(ray_a), to = optics.project(ray_b);
-    if (from && to) flow_px[i] = (*to - *from).cast<float>();
+    const Vec3 ray_b = R_b_a * ray_a + inverse_depth * T_b_a.translation;
+    if (!(ray_b.z() > 0)) continue;
+    flow_px[i] = optics.difference(ray_b.head<2>() * (1 / ray_b.z()), ray_a.head<2>()).cast<float>();
   }
   return flow_px;
 }

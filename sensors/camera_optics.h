@@ -17,6 +17,11 @@ class CameraOptics {
 
   /// Image point of a point or direction; nothing behind the camera has one.
   std::optional<Vec2> project(const Vec3& p_camera) const;
+  /// Image point of one direction minus that of another, both with z = 1 and given by their x and y.
+  Vec2 difference(const Vec2& to, const Vec2& from) const {
+    if (distorted_) return focal_px_.cwiseProduct(distort(to) - distort(from));
+    return focal_px_.cwiseProduct(to - from);
+  }
   /// Unit ray through an image point; projects back to within 1e-9 px.
   Vec3 ray(const Vec2& pixel) const;
   /// Rays through all pixels, each `offset_px` beside its centre.
