@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "core/rng.h"
 #include "slam/loop/loop_detector.h"
 #include "slam/loop/scan_context.h"
@@ -67,6 +69,36 @@ TEST(ScanContext, PointsFallIntoTheCellsOfTheDefinition) {
   EXPECT_EQ(cell_of(-0.01f, 5), std::pair(2, 15));
   EXPECT_EQ(cell_of(5, -0.01f), std::pair(2, 59));
   EXPECT_TRUE(polar_heights({{40.01f, 0, 1}}, kMountHeight, config).isZero());
+}
+
+TEST(ScanContext, SectorsAreThoseOfAtan2ToTheLastPoint) {
+  const ScanContextConfig config{.max_range_m = 200};
+  const RandomStream stream(11, "points");
+  const auto expect_sector = [&](float x, float y) {
+    const float theta = std::atan2(y, x);
+    const float turn = theta < 0 ? theta + 2 * std::numbers::pi_v<float> : theta;
+    const int sector =
+        std::clamp(static_cast<int>(std::ceil(turn * (30 / std::numbers::pi_v<float>))), 1, kSectors) - 1;
+    Eigen::Index row = -1, column = -1;
+    polar_heights({{x, y, 1}}, kMountHeight, config).maxCoeff(&row, &column);
+    ASSERT_EQ(column, sector) << x << " " << y;
+  };
+  for (uint64_t i = 0; i < 20000; ++i)
+    expect_sector(static_cast<float>(20 * stream.normal(i, 0)), static_cast<float>(5 * stream.normal(i, 1)));
+  for (int border = -60; border <= 60; ++border)  // each border, on it and a few last digits beside it
+    for (int digits = -20; digits <= 20; ++digits) {
+      const float angle =
+          static_cast<float>(border) * std::numbers::pi_v<float> / 30 + static_cast<float>(digits) * 2e-7f;
+      expect_sector(7 * std::cos(angle), 7 * std::sin(angle));
+    }
+  for (const float zero : {0.0f, -0.0f}) {
+    expect_sector(zero, zero);
+    for (const float one : {1.0f, -1.0f}) {
+      expect_sector(zero, one);
+      expect_sector(one, zero);
+      expect_sector(one, 1e-30f * one);
+    }
+  }
 }
 
 TEST(ScanContext, CellsHoldTheHighestPointAboveGround) {
