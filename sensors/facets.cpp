@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <tuple>
+#include <utility>
 
 namespace vsslam {
 
@@ -48,13 +48,14 @@ class Continuation {
 }  // namespace
 
 std::vector<uint32_t> facets(const PlacedTriangles& triangles, const std::vector<SurfaceRecord>& records) {
-  using Kind = std::tuple<uint32_t, int, int32_t>;  // object, material, chart
-  std::map<Kind, std::vector<uint32_t>> of_kind;
+  using Kind = std::pair<int, int32_t>;           // material, chart
+  std::map<Kind, std::vector<uint32_t>> of_kind;  // of one object
   std::vector<uint32_t> facet_of;
   facet_of.reserve(triangles.all.size());
   for (uint32_t t = 0; t < triangles.all.size(); ++t) {
     const PlacedTriangle& triangle = triangles.all[t];
-    std::vector<uint32_t>& recent = of_kind[{triangle.object, triangle.material, records[t].light_offset}];
+    if (t > 0 && triangle.object != triangles.all[t - 1].object) of_kind.clear();
+    std::vector<uint32_t>& recent = of_kind[{triangle.material, records[t].light_offset}];
     const auto same = std::find_if(recent.rbegin(), recent.rend(), [&](uint32_t facet) {
       return Continuation(records[facet]).holds(triangle, records[t]);
     });

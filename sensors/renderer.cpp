@@ -1,5 +1,7 @@
 #include "sensors/renderer.h"
 
+#include <malloc.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -68,6 +70,7 @@ struct Renderer::Impl {
     LightMapCharts charts = chart_surfaces(triangles, kNodeSpacing_m, kMostNodes);
     light_map = bake_light_map({triangles, charts, textures, lights, raycaster});
     release(charts.sites);
+    malloc_trim(0);  // a million small pieces of charts, freed, would stay with the process
     tree = TriangleTree(triangles);
     records = surface_records(triangles, charts, textures);
     release(charts.of_triangle);

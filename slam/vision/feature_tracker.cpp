@@ -24,6 +24,7 @@ struct Track {
   WindowShape shape;          // of the window when it was chosen
   Eigen::Vector2f window_px;  // centre of what is followed
   Eigen::Vector2f offset_px;  // from there to the feature: the point whose motion the window's flow is
+  Eigen::Vector2f kept_px;    // the window in the last image that was kept
   Vec2 ray_camera;            // of the feature
 
   Vec2 pixel_px() const { return (window_px + offset_px).cast<double>(); }
@@ -55,16 +56,20 @@ struct FeatureTracker::Impl {
   Impl(const FeatureTrackerConfig& c, const CameraCalibration& k)
       : config(c), calibration(k), camera(k), flow(c.flow, k.width_px, k.height_px) {}
 
-  VisualFrame track(const CameraFrame& image, const Quat* q_last_now, bool detect) {
+  VisualFrame track(const CameraFrame& image, const Quat* q_last_now, bool keep) {
     require_size(image);
     flow.push(image);
     counts = {.equalized = flow.equalized()};
     const std::vector<Track> last = std::move(tracks);
-    tracks = follow(last, q_last_now);
+    tracks = follow(last, q_last_now, keep);
     const Quat q_agreed = reject_outliers(last, q_last_now, image.stamp);
     follow_features(last, q_agreed);
     separate();
-    if (detect) add_corners();
+    if (keep) {
+      add_corners();
+      flow.keep();
+      for (Track& track : tracks) track.kept_px = track.window_px;
+    }
     return frame(image.stamp);
   }
 
@@ -108,10 +113,9 @@ struct FeatureTracker::Impl {
            p.y() <= static_cast<float>(calibration.height_px - 1) - border;
   }
 
-  std::vector<Track> follow(const std::vector<Track>& last, const Quat* q_last_now) {
-    const std::vector<Eigen::Vector2f> from = windows(last);
-    std::vector<std::optional<Eigen::Vector2f>> to = flow.follow(from, predict(last, q_last_now));
-    if (q_last_now) retry_lost(from, to);
+  std::vector<Track> follow(const std::vector<Track>& last, const Quat* q_last_now, bool check) {
+    std::vector<std::optional<Eigen::Vector2f>> to = search(last, predict(last, q_last_now), check);
+    if (q_last_now) retry_lost(last, to, check);
     std::vector<Track> followed;
     for (size_t i = 0; i < last.size(); ++i) {
       if (!to[i] || !inside(*to[i])) continue;
@@ -123,13 +127,32 @@ struct FeatureTracker::Impl {
     return followed;
   }
 
+  // Where the windows are in the newest image; with `check` those that come home from there.
+  std::vector<std::optional<Eigen::Vector2f>> search(const std::vector<Track>& last,
+                                                     const std::vector<Eigen::Vector2f>& guess_px,
+                                                     bool check) const {
+    std::vector<std::optional<Eigen::Vector2f>> to = flow.follow(windows(last), guess_px);
+    if (!check) return to;
+    std::vector<Eigen::Vector2f> found, kept;
+    for (size_t i = 0; i < last.size(); ++i)
+      if (to[i]) {
+        found.push_back(*to[i]);
+        kept.push_back(last[i].kept_px);
+      }
+    const std::vector<bool> home = flow.come_home(found, kept);
+    size_t next = 0;
+    for (std::optional<Eigen::Vector2f>& position : to)
+      if (position && !home[next++]) position.reset();
+    return to;
+  }
+
   // A wrong rotation must not cost more than none.
-  void retry_lost(const std::vector<Eigen::Vector2f>& from,
-                  std::vector<std::optional<Eigen::Vector2f>>& to) const {
-    std::vector<Eigen::Vector2f> lost;
-    for (size_t i = 0; i < from.size(); ++i)
-      if (!to[i]) lost.push_back(from[i]);
-    const std::vector<std::optional<Eigen::Vector2f>> again = flow.follow(lost, lost);
+  void retry_lost(const std::vector<Track>& last, std::vector<std::optional<Eigen::Vector2f>>& to,
+                  bool check) const {
+    std::vector<Track> lost;
+    for (size_t i = 0; i < last.size(); ++i)
+      if (!to[i]) lost.push_back(last[i]);
+    const std::vector<std::optional<Eigen::Vector2f>> again = search(lost, windows(lost), check);
     auto next = again.begin();
     for (std::optional<Eigen::Vector2f>& position : to)
       if (!position) position = *next++;
@@ -206,7 +229,7 @@ struct FeatureTracker::Impl {
          find_corners(image, flow.noise_grey(), windows(tracks), most - tracks.size(), config.corners)) {
       const WindowShape shape = window_shape(image, static_cast<int>(corner.x()),
                                              static_cast<int>(corner.y()), config.flow.window());
-      Track track{next_id, shape, corner, shape.centre_px(), Vec2::Zero()};
+      Track track{next_id, shape, corner, shape.centre_px(), corner, Vec2::Zero()};
       if (!locate(track)) continue;
       tracks.push_back(track);
       ++next_id;
@@ -235,8 +258,8 @@ FeatureTracker::FeatureTracker(const FeatureTrackerConfig& config, const CameraC
 }
 FeatureTracker::~FeatureTracker() = default;
 
-VisualFrame FeatureTracker::track(const CameraFrame& image, const Quat* q_last_now, bool detect) {
-  return impl_->track(image, q_last_now, detect);
+VisualFrame FeatureTracker::track(const CameraFrame& image, const Quat* q_last_now, bool keep) {
+  return impl_->track(image, q_last_now, keep);
 }
 
 void FeatureTracker::reset() {

@@ -1,4 +1,5 @@
-// Where points of the last image are in the newest one: pyramidal Lucas-Kanade, there and back.
+// Where points of the last image are in the newest one, and whether the way back leads home: pyramidal
+// Lucas-Kanade.
 #pragma once
 
 #include <memory>
@@ -40,8 +41,10 @@ class OpticalFlow {
   OpticalFlow(const OpticalFlowConfig& config, int width_px, int height_px);
   ~OpticalFlow();
 
-  /// The newest image becomes the last one; `image` the newest. Its pyramid is built once, for both.
+  /// The newest image becomes the last one; `image` the newest. Its pyramid is built once, for all.
   void push(const CameraFrame& image);
+  /// The newest image becomes the kept one, until the next is kept.
+  void keep();
   /// The newest image as features see it (equalised where that is on); valid until the next push.
   GreyView newest() const;
   bool equalized() const;
@@ -51,6 +54,9 @@ class OpticalFlow {
   /// Needs two images. `guess_px`: where to start looking. Empty: lost.
   std::vector<std::optional<Eigen::Vector2f>> follow(const std::vector<Eigen::Vector2f>& last_px,
                                                      const std::vector<Eigen::Vector2f>& guess_px) const;
+  /// Whether points of the newest image, followed back to the kept one, come home. Needs a kept image.
+  std::vector<bool> come_home(const std::vector<Eigen::Vector2f>& newest_px,
+                              const std::vector<Eigen::Vector2f>& kept_px) const;
 
  private:
   struct Impl;

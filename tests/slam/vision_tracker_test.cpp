@@ -267,6 +267,48 @@ TEST(FeatureTracker, RejectsWhatMovesByItself) {
   EXPECT_LT(survivors, 0.05 * inside);  // by chance along its epipolar line
 }
 
+TEST(FeatureTracker, FollowsPointsThroughImagesThatAreNotKept) {
+  FeatureTracker tracker(small_config(), small_camera());
+  std::vector<VisualFrame> frames;
+  for (size_t k = 0; k < clean_drive().size(); ++k) {
+    const Quat q_last_now = k == 0 ? Quat::Identity() : turn(static_cast<int>(k));
+    frames.push_back(tracker.track(clean_drive()[k], k == 0 ? nullptr : &q_last_now, k % 3 == 0));
+  }
+  EXPECT_LT(rms_error_px(frames, small_camera()), 0.1);
+  EXPECT_GT(mean_length(frames), 10);
+}
+
+TEST(FeatureTracker, DropsWhatImagesThatAreNotKeptLedAstray) {
+  // For two images a patch of something else slides over the scene and takes the features under it along.
+  const WaveTexture scene(3), other(5);
+  const SE3 pose = before_plane(Vec3::Zero(), Vec3::Zero());
+  const auto image = [&](int k) {
+    CameraFrame frame = render(scene, small_camera(), pose, frame_time(k));
+    const CameraFrame passing =
+        render(other, small_camera(), before_plane(Vec3::Zero(), {-0.05 * k, 0, 0}), frame_time(k));
+    if (k == 1 || k == 2)
+      for (int y = 40; y < 200; ++y)
+        std::copy_n(passing.grey.begin() + y * small_camera().width_px + 80, 120,
+                    frame.grey.begin() + y * small_camera().width_px + 80);
+    return frame;
+  };
+  FeatureTrackerConfig config = small_config();
+  config.epipolar.threshold_px = 1000;  // nothing else rejects them
+  std::map<bool, int> astray, true_to_place;
+  for (const bool keep : {false, true}) {
+    FeatureTracker tracker(config, small_camera());
+    std::map<int64_t, Vec2> home_px;
+    for (const VisualFeature& f : tracker.track(image(0)).features) home_px[f.id] = f.pixel_px;
+    for (int k = 1; k < 3; ++k) tracker.track(image(k), nullptr, false);
+    for (const VisualFeature& f : tracker.track(image(3), nullptr, keep).features)
+      if (home_px.contains(f.id))
+        ++((f.pixel_px - home_px.at(f.id)).norm() < 1 ? true_to_place : astray)[keep];
+  }
+  EXPECT_GT(astray[false], 5);
+  EXPECT_EQ(astray[true], 0);
+  EXPECT_GT(true_to_place[true], 30);
+}
+
 TEST(FeatureTracker, FindsNewFeaturesOnlyWhereAsked) {
   FeatureTracker tracker(small_config(), small_camera());
   const std::vector<CameraFrame> images = drive(6);
