@@ -13,7 +13,7 @@ namespace vsslam {
 
 namespace {
 
-constexpr size_t kBlocksPerPiece = 16;  ///< of parallel work
+constexpr size_t kBlocksPerPiece = 8;  ///< of parallel work
 
 /// Returns of a block before they are put in order of firing.
 struct BlockReturns {

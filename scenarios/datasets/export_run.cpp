@@ -50,7 +50,6 @@ class Acquisition {
  public:
   Acquisition(const Scenario& scenario, const World& world, const Sinks& sinks)
       : sinks_(sinks),
-        lasers_(laser_table(scenario.rig.sensors.lidar.model)),
         rig_(world, scenario.rig, scenario.events.sensors, scenario.seeds.front(), scenario.lighting) {
     rig_.leave_out({.scan = [this](int64_t index, Time stamp) { return !needed(index, stamp); },
                     .image = [this](Time stamp) { return mean_grey_before(stamp); }});
@@ -87,7 +86,6 @@ class Acquisition {
   }
 
   DatasetSample sample(Measurement&& measurement, const Trajectory& trajectory) {
-    if (auto* lidar = std::get_if<LidarMeasurement>(&measurement)) arrange_in_columns(*lidar, lasers_);
     DatasetSample sample{.measurement = std::move(measurement)};
     sample.index = next_index_[sample.measurement.index()]++;
     std::visit(
@@ -100,7 +98,6 @@ class Acquisition {
   }
 
   const Sinks& sinks_;
-  const LaserTable& lasers_;
   Rig rig_;
   int64_t next_index_[std::variant_size_v<Measurement>] = {};
 };
@@ -120,6 +117,7 @@ class ExportRun final : public Pipeline {
         sinks_(sinks),
         outcome_(outcome),
         on_progress_(std::move(on_progress)),
+        lasers_(laser_table(place.scenario().rig.sensors.lidar.model)),
         wants_png_(std::any_of(sinks.begin(), sinks.end(), [](const auto& s) { return s->wants_png(); })) {}
   ~ExportRun() override {
     for (const WallClock* clock : {&drive_clock_, &sense_clock_, &write_clock_}) outcome_.clock.add(*clock);
@@ -214,9 +212,13 @@ class ExportRun final : public Pipeline {
                 }};
   }
 
+  /// What several sinks want of a sample.
   void encode(SampleChunk& chunk) {
-    if (!wants_png_) return;
     StageTimer timer(&write_clock_, "encode");
+    for (DatasetSample& sample : chunk.samples)
+      if (auto* lidar = std::get_if<LidarMeasurement>(&sample.measurement))
+        arrange_in_columns(*lidar, lasers_);
+    if (!wants_png_) return;
     parallel_pieces(chunk.samples.size(), 1, [&](size_t i, size_t) {
       DatasetSample& sample = chunk.samples[i];
       const auto* camera = std::get_if<CameraMeasurement>(&sample.measurement);
@@ -234,6 +236,7 @@ class ExportRun final : public Pipeline {
   const Sinks& sinks_;
   ExportOutcome& outcome_;
   std::function<void(double expected_s)> on_progress_;
+  const LaserTable& lasers_;
   const bool wants_png_;
   WallClock drive_clock_, sense_clock_, write_clock_;
   std::unique_ptr<Driving> driving_;

@@ -1,7 +1,6 @@
 #include "scenarios/datasets/scan_columns.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <vector>
 
@@ -24,17 +23,19 @@ void arrange_in_columns(LidarMeasurement& measurement, const LaserTable& table) 
   const std::vector<LidarPoint>& points = measurement.scan.points;
   // Firings are 2.3 us apart; times as float are right to 4 ns.
   const auto cycle = [&](const LidarPoint& p) {
-    return std::llround(static_cast<double>(p.time_s) * 1e9 + 500) / table.cycle_ns;
+    return static_cast<int64_t>(static_cast<double>(p.time_s) * 1e9 + 500) / table.cycle_ns;
   };
   std::vector<uint32_t> order(points.size());
-  std::iota(order.begin(), order.end(), 0u);
+  std::vector<size_t> place(table.lasers.size() + 1);  // of each ring's next point
   for (size_t begin = 0, end = 0; begin < points.size(); begin = end) {
-    while (end < points.size() && cycle(points[end]) == cycle(points[begin])) ++end;
-    const auto first = order.begin() + static_cast<std::ptrdiff_t>(begin),
-               last = order.begin() + static_cast<std::ptrdiff_t>(end);
-    std::stable_sort(first, last, [&](uint32_t a, uint32_t b) { return points[a].ring < points[b].ring; });
+    std::fill(place.begin(), place.end(), 0);
+    for (const int64_t now = cycle(points[begin]); end < points.size() && cycle(points[end]) == now; ++end)
+      ++place[points[end].ring + 1u];
+    std::partial_sum(place.begin(), place.end(), place.begin());
+    for (size_t i = begin; i < end; ++i) order[begin + place[points[i].ring]++] = static_cast<uint32_t>(i);
     if (end == points.size() && points[order.back()].time_s < points.back().time_s)
-      std::iota(first, last, static_cast<uint32_t>(begin));
+      std::iota(order.begin() + static_cast<std::ptrdiff_t>(begin), order.end(),
+                static_cast<uint32_t>(begin));
   }
   permute(measurement.truth, order);
   permute(measurement.scan.points, order);
