@@ -50,8 +50,9 @@ std::string camera_chain(const DatasetFacts& facts) {
 
 std::string estimator(const DatasetFacts& facts) {
   return fmt::format(
-      "%YAML:1.0\n\nverbosity: \"INFO\"\nuse_fej: true\nintegration: \"rk4\"\nuse_stereo: "
-      "false\nmax_cameras: 1\n\n"
+      "%YAML:1.0\n\nverbosity: \"INFO\"\nuse_fej: true\n"
+      "integration: \"rk4\"\nuse_imuavg: true\nuse_rk4int: true # how 2.6 and before ask for it\n"
+      "use_stereo: false\nmax_cameras: 1\n\n"
       "# The calibration is exact.\n"
       "calib_cam_extrinsics: false\ncalib_cam_intrinsics: false\ncalib_cam_timeoffset: false\n"
       "calib_imu_intrinsics: false\ncalib_imu_g_sensitivity: false\n\n"

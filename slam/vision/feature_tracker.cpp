@@ -24,7 +24,6 @@ struct Track {
   WindowShape shape;          // of the window when it was chosen
   Eigen::Vector2f window_px;  // centre of what is followed
   Eigen::Vector2f offset_px;  // from there to the feature: the point whose motion the window's flow is
-  Eigen::Vector2f kept_px;    // the window in the last image that was kept
   Vec2 ray_camera;            // of the feature
 
   Vec2 pixel_px() const { return (window_px + offset_px).cast<double>(); }
@@ -65,11 +64,7 @@ struct FeatureTracker::Impl {
     const Quat q_agreed = reject_outliers(last, q_last_now, image.stamp);
     follow_features(last, q_agreed);
     separate();
-    if (keep) {
-      add_corners();
-      flow.keep();
-      for (Track& track : tracks) track.kept_px = track.window_px;
-    }
+    if (keep) add_corners();
     return frame(image.stamp);
   }
 
@@ -113,9 +108,10 @@ struct FeatureTracker::Impl {
            p.y() <= static_cast<float>(calibration.height_px - 1) - border;
   }
 
-  std::vector<Track> follow(const std::vector<Track>& last, const Quat* q_last_now, bool check) {
-    std::vector<std::optional<Eigen::Vector2f>> to = search(last, predict(last, q_last_now), check);
-    if (q_last_now) retry_lost(last, to, check);
+  std::vector<Track> follow(const std::vector<Track>& last, const Quat* q_last_now, bool and_back) {
+    const std::vector<Eigen::Vector2f> from = windows(last);
+    std::vector<std::optional<Eigen::Vector2f>> to = flow.follow(from, predict(last, q_last_now), and_back);
+    if (q_last_now) retry_lost(from, and_back, to);
     std::vector<Track> followed;
     for (size_t i = 0; i < last.size(); ++i) {
       if (!to[i] || !inside(*to[i])) continue;
@@ -127,32 +123,13 @@ struct FeatureTracker::Impl {
     return followed;
   }
 
-  // Where the windows are in the newest image; with `check` those that come home from there.
-  std::vector<std::optional<Eigen::Vector2f>> search(const std::vector<Track>& last,
-                                                     const std::vector<Eigen::Vector2f>& guess_px,
-                                                     bool check) const {
-    std::vector<std::optional<Eigen::Vector2f>> to = flow.follow(windows(last), guess_px);
-    if (!check) return to;
-    std::vector<Eigen::Vector2f> found, kept;
-    for (size_t i = 0; i < last.size(); ++i)
-      if (to[i]) {
-        found.push_back(*to[i]);
-        kept.push_back(last[i].kept_px);
-      }
-    const std::vector<bool> home = flow.come_home(found, kept);
-    size_t next = 0;
-    for (std::optional<Eigen::Vector2f>& position : to)
-      if (position && !home[next++]) position.reset();
-    return to;
-  }
-
   // A wrong rotation must not cost more than none.
-  void retry_lost(const std::vector<Track>& last, std::vector<std::optional<Eigen::Vector2f>>& to,
-                  bool check) const {
-    std::vector<Track> lost;
-    for (size_t i = 0; i < last.size(); ++i)
-      if (!to[i]) lost.push_back(last[i]);
-    const std::vector<std::optional<Eigen::Vector2f>> again = search(lost, windows(lost), check);
+  void retry_lost(const std::vector<Eigen::Vector2f>& from, bool and_back,
+                  std::vector<std::optional<Eigen::Vector2f>>& to) const {
+    std::vector<Eigen::Vector2f> lost;
+    for (size_t i = 0; i < from.size(); ++i)
+      if (!to[i]) lost.push_back(from[i]);
+    const std::vector<std::optional<Eigen::Vector2f>> again = flow.follow(lost, lost, and_back);
     auto next = again.begin();
     for (std::optional<Eigen::Vector2f>& position : to)
       if (!position) position = *next++;
@@ -229,7 +206,7 @@ struct FeatureTracker::Impl {
          find_corners(image, flow.noise_grey(), windows(tracks), most - tracks.size(), config.corners)) {
       const WindowShape shape = window_shape(image, static_cast<int>(corner.x()),
                                              static_cast<int>(corner.y()), config.flow.window());
-      Track track{next_id, shape, corner, shape.centre_px(), corner, Vec2::Zero()};
+      Track track{next_id, shape, corner, shape.centre_px(), Vec2::Zero()};
       if (!locate(track)) continue;
       tracks.push_back(track);
       ++next_id;

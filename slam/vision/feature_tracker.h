@@ -40,8 +40,8 @@ class FeatureTracker {
 
   /// Frames in order of time. `q_last_now` is the camera's rotation since the last frame (coordinates of the
   /// new camera frame into the last one), where the gyroscope knows it: the guess of where features went.
-  /// Images that are made use of are to be kept: in these features are checked against the last one kept, and lost
-  /// ones replaced. Those between only lead from one to the next.
+  /// In an image to `keep`, one that is made use of, features are followed there and back and lost ones are replaced;
+  /// the images between only lead from one such to the next.
   /// Throws InputError if the image does not fit the calibration.
   VisualFrame track(const CameraFrame& image, const Quat* q_last_now = nullptr, bool keep = true);
   /// Forgets all tracks; ids go on.

@@ -1,6 +1,5 @@
 #include "slam/vision/optical_flow.h"
 
-#include <algorithm>
 #include <array>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/video/tracking.hpp>
@@ -74,8 +73,7 @@ struct OpticalFlow::Impl {
   cv::Ptr<cv::CLAHE> clahe;
   bool equalizing = false;
   double noise_grey = 0;  // of the newest image as delivered
-  std::array<Image, 3> images;
-  Image *newest = nullptr, *last = nullptr, *kept = nullptr;  // of these; null: not yet
+  Image last, newest;
 
   Impl(const OpticalFlowConfig& c, int width, int height)
       : config(c),
@@ -124,25 +122,19 @@ OpticalFlow::~OpticalFlow() = default;
 
 void OpticalFlow::push(const CameraFrame& image) {
   Impl& s = *impl_;
-  s.last = s.newest;
-  s.newest = std::find_if(s.images.begin(), s.images.end(),
-                          [&](const Impl::Image& other) { return &other != s.last && &other != s.kept; });
+  std::swap(s.last, s.newest);
   // OpenCV has no read-only view; the copy outlives the caller's image.
-  cv::Mat(s.height_px, s.width_px, CV_8U, const_cast<uint8_t*>(image.grey.data())).copyTo(s.newest->raw);
-  s.noise_grey = noise_sigma_grey(view_of(s.newest->raw));
+  cv::Mat(s.height_px, s.width_px, CV_8U, const_cast<uint8_t*>(image.grey.data())).copyTo(s.newest.raw);
+  s.noise_grey = noise_sigma_grey(view_of(s.newest.raw));
   const bool was = s.equalizing;
-  s.equalizing = s.wants_equalizing(s.newest->raw);
+  s.equalizing = s.wants_equalizing(s.newest.raw);
+  s.prepare(s.newest);
   // Two images can be compared only if both are equalised, or neither.
-  for (Impl::Image& other : s.images)
-    if (&other == s.newest || (was != s.equalizing && !other.raw.empty())) s.prepare(other);
-}
-
-void OpticalFlow::keep() {
-  impl_->kept = impl_->newest;
+  if (was != s.equalizing && !s.last.raw.empty()) s.prepare(s.last);
 }
 
 GreyView OpticalFlow::newest() const {
-  return view_of(impl_->newest->seen);
+  return view_of(impl_->newest.seen);
 }
 
 bool OpticalFlow::equalized() const {
@@ -153,33 +145,29 @@ double OpticalFlow::noise_grey() const {
   return impl_->noise_grey * (impl_->equalizing ? impl_->config.clip_limit : 1);
 }
 
-std::vector<std::optional<Eigen::Vector2f>> OpticalFlow::follow(
-    const std::vector<Eigen::Vector2f>& last_px, const std::vector<Eigen::Vector2f>& guess_px) const {
+std::vector<std::optional<Eigen::Vector2f>> OpticalFlow::follow(const std::vector<Eigen::Vector2f>& last_px,
+                                                                const std::vector<Eigen::Vector2f>& guess_px,
+                                                                bool and_back) const {
   const Impl& s = *impl_;
   std::vector<std::optional<Eigen::Vector2f>> result(last_px.size());
-  if (last_px.empty() || !s.last) return result;
+  if (last_px.empty() || s.last.pyramid.empty()) return result;
+  const Points from = to_cv(last_px);
   Points there = to_cv(guess_px);
-  const std::vector<uint8_t> found = s.search(*s.last, *s.newest, to_cv(last_px), there, s.config.levels);
-  for (size_t i = 0; i < there.size(); ++i)
+  std::vector<uint8_t> found = s.search(s.last, s.newest, from, there, s.config.levels);
+  if (and_back) {
+    Points back = from;
+    // The way back starts at home, so that one level above the image is enough.
+    const std::vector<uint8_t> returned =
+        s.search(s.newest, s.last, there, back, std::min(1, s.config.levels));
+    const double limit2 = s.config.max_return_px * s.config.max_return_px;
+    for (size_t i = 0; i < from.size(); ++i) {
+      const cv::Point2f miss = back[i] - from[i];
+      found[i] = found[i] && returned[i] && miss.dot(miss) <= limit2;
+    }
+  }
+  for (size_t i = 0; i < from.size(); ++i)
     if (found[i]) result[i] = Eigen::Vector2f(there[i].x, there[i].y);
   return result;
-}
-
-std::vector<bool> OpticalFlow::come_home(const std::vector<Eigen::Vector2f>& newest_px,
-                                         const std::vector<Eigen::Vector2f>& kept_px) const {
-  const Impl& s = *impl_;
-  std::vector<bool> home(newest_px.size());
-  if (newest_px.empty()) return home;
-  // The search starts at home, so that one level above the image is enough.
-  Points back = to_cv(kept_px);
-  const std::vector<uint8_t> found =
-      s.search(*s.newest, *s.kept, to_cv(newest_px), back, std::min(1, s.config.levels));
-  const double limit2 = s.config.max_return_px * s.config.max_return_px;
-  for (size_t i = 0; i < back.size(); ++i) {
-    const cv::Point2f miss = back[i] - cv::Point2f(kept_px[i].x(), kept_px[i].y());
-    home[i] = found[i] && miss.dot(miss) <= limit2;
-  }
-  return home;
 }
 
 }  // namespace vsslam

@@ -1,5 +1,4 @@
-// Where points of the last image are in the newest one, and whether the way back leads home: pyramidal
-// Lucas-Kanade.
+// Where points of the last image are in the newest one: pyramidal Lucas-Kanade, there and, where asked, back.
 #pragma once
 
 #include <memory>
@@ -41,22 +40,19 @@ class OpticalFlow {
   OpticalFlow(const OpticalFlowConfig& config, int width_px, int height_px);
   ~OpticalFlow();
 
-  /// The newest image becomes the last one; `image` the newest. Its pyramid is built once, for all.
+  /// The newest image becomes the last one; `image` the newest. Its pyramid is built once, for both.
   void push(const CameraFrame& image);
-  /// The newest image becomes the kept one, until the next is kept.
-  void keep();
   /// The newest image as features see it (equalised where that is on); valid until the next push.
   GreyView newest() const;
   bool equalized() const;
   /// Standard deviation of the newest image's noise, were it not smoothed; with equalisation at most so much.
   double noise_grey() const;
 
-  /// Needs two images. `guess_px`: where to start looking. Empty: lost.
+  /// Needs two images. `guess_px`: where to start looking. With `and_back` a point is found only if the way back leads
+  /// home. Empty: lost.
   std::vector<std::optional<Eigen::Vector2f>> follow(const std::vector<Eigen::Vector2f>& last_px,
-                                                     const std::vector<Eigen::Vector2f>& guess_px) const;
-  /// Whether points of the newest image, followed back to the kept one, come home. Needs a kept image.
-  std::vector<bool> come_home(const std::vector<Eigen::Vector2f>& newest_px,
-                              const std::vector<Eigen::Vector2f>& kept_px) const;
+                                                     const std::vector<Eigen::Vector2f>& guess_px,
+                                                     bool and_back) const;
 
  private:
   struct Impl;

@@ -278,35 +278,29 @@ TEST(FeatureTracker, FollowsPointsThroughImagesThatAreNotKept) {
   EXPECT_GT(mean_length(frames), 10);
 }
 
-TEST(FeatureTracker, DropsWhatImagesThatAreNotKeptLedAstray) {
-  // For two images a patch of something else slides over the scene and takes the features under it along.
+TEST(FeatureTracker, ChecksTheWayBackInImagesThatAreKept) {
+  // A strip of something else has come over the scene: what was under it is found somewhere, but not from there.
   const WaveTexture scene(3), other(5);
   const SE3 pose = before_plane(Vec3::Zero(), Vec3::Zero());
-  const auto image = [&](int k) {
-    CameraFrame frame = render(scene, small_camera(), pose, frame_time(k));
-    const CameraFrame passing =
-        render(other, small_camera(), before_plane(Vec3::Zero(), {-0.05 * k, 0, 0}), frame_time(k));
-    if (k == 1 || k == 2)
-      for (int y = 40; y < 200; ++y)
-        std::copy_n(passing.grey.begin() + y * small_camera().width_px + 80, 120,
-                    frame.grey.begin() + y * small_camera().width_px + 80);
-    return frame;
-  };
+  CameraFrame covered = render(scene, small_camera(), pose, frame_time(1));
+  const CameraFrame strip = render(other, small_camera(), pose, frame_time(1));
+  for (int y = 40; y < 200; ++y)
+    std::copy_n(strip.grey.begin() + y * small_camera().width_px + 80, 120,
+                covered.grey.begin() + y * small_camera().width_px + 80);
   FeatureTrackerConfig config = small_config();
   config.epipolar.threshold_px = 1000;  // nothing else rejects them
-  std::map<bool, int> astray, true_to_place;
+  std::map<bool, int> astray, in_place;
   for (const bool keep : {false, true}) {
     FeatureTracker tracker(config, small_camera());
     std::map<int64_t, Vec2> home_px;
-    for (const VisualFeature& f : tracker.track(image(0)).features) home_px[f.id] = f.pixel_px;
-    for (int k = 1; k < 3; ++k) tracker.track(image(k), nullptr, false);
-    for (const VisualFeature& f : tracker.track(image(3), nullptr, keep).features)
-      if (home_px.contains(f.id))
-        ++((f.pixel_px - home_px.at(f.id)).norm() < 1 ? true_to_place : astray)[keep];
+    for (const VisualFeature& f : tracker.track(render(scene, small_camera(), pose, frame_time(0))).features)
+      home_px[f.id] = f.pixel_px;
+    for (const VisualFeature& f : tracker.track(covered, nullptr, keep).features)
+      if (home_px.contains(f.id)) ++((f.pixel_px - home_px.at(f.id)).norm() < 1 ? in_place : astray)[keep];
   }
-  EXPECT_GT(astray[false], 5);
-  EXPECT_EQ(astray[true], 0);
-  EXPECT_GT(true_to_place[true], 30);
+  EXPECT_GT(astray[false], 10);
+  EXPECT_LT(astray[true], astray[false] / 4);
+  EXPECT_GT(in_place[true], 30);
 }
 
 TEST(FeatureTracker, FindsNewFeaturesOnlyWhereAsked) {
