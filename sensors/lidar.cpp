@@ -86,6 +86,7 @@ struct Lidar::Impl {
   LidarErrors errors;
   RandomStream lost_packets;
 
+  bool wants_truth = true;  ///< of points
   CycleAzimuths azimuths;
   std::vector<Piece> pieces;
 
@@ -105,6 +106,10 @@ struct Lidar::Impl {
 Lidar::Lidar(const LidarConfig& config, const SensorEvents& events, uint64_t seed, const Raycaster& raycaster)
     : impl_(std::make_unique<Impl>(config, events, seed, raycaster)) {}
 Lidar::~Lidar() = default;
+
+void Lidar::leave_out_truth() {
+  impl_->wants_truth = false;
+}
 
 Revolution Lidar::power_on(Time stamp) {
   const int64_t cycle_ns = impl_->table.cycle_ns;
@@ -168,17 +173,18 @@ uint32_t Lidar::Impl::closed_cycles(const Revolution& revolution, const FiringBl
 
 void Lidar::Impl::emit(const FiringBlock& block, const BlockReturns& returns, Piece& piece) const {
   LidarPoint* point = piece.points.data() + piece.size;
-  PointTruth* truth = piece.truth.data() + piece.size;
+  PointTruth* truth = wants_truth ? piece.truth.data() + piece.size : nullptr;
   for (int i = 0; i < block.count; ++i) {
     const int64_t cycle_ns = (static_cast<int64_t>(block.first) + i) * table.cycle_ns;
     for (size_t laser = 0; laser < beams.lasers; ++laser) {
       const ReportedPacket& reported = returns.reported[laser];
       if (!reported.any[i]) continue;
-      const EchoPacket& echo = returns.echoes[laser];
       const PointPacket& at = returns.points[laser];
       const Laser& mount = table.lasers[laser];
       const auto time_s = static_cast<float>(1e-9 * static_cast<double>(cycle_ns + mount.fire_offset_ns));
       *point++ = {at.x[i], at.y[i], at.z[i], reported.intensity[i], mount.ring, time_s};
+      if (!wants_truth) continue;
+      const EchoPacket& echo = returns.echoes[laser];
       *truth++ = {{echo.x[i], echo.y[i], echo.z[i]},
                   {echo.normal_x[i], echo.normal_y[i], echo.normal_z[i]},
                   echo.range_m[i],
@@ -202,7 +208,7 @@ void Lidar::Impl::fire(const Revolution& revolution, const FiringBlock& block, c
     ReportedPacket& reported = returns.reported[laser];
     errors.report(echo, laser, first_cycle, reported);
     place_points(beams, laser, block, azimuths, reported.range_m, returns.points[laser]);
-    frame.enter(echo);
+    if (wants_truth) frame.enter(echo);
   }
   emit(block, returns, piece);
 }
@@ -222,7 +228,7 @@ LidarMeasurement Lidar::scan(const Revolution& revolution, const Trajectory& tra
   parallel_pieces(blocks, kBlocksPerPiece, [&](size_t first, size_t last) {
     Piece& piece = impl.pieces[first / kBlocksPerPiece];
     piece.points.resize(kBlocksPerPiece * kLanes * impl.beams.lasers);
-    piece.truth.resize(piece.points.size());
+    if (impl.wants_truth) piece.truth.resize(piece.points.size());
     piece.size = 0;
     for (size_t b = first; b < last; ++b)
       impl.fire(revolution, impl.block_of(revolution, b, trajectory, T_base_lidar), frame, piece);
@@ -231,11 +237,12 @@ LidarMeasurement Lidar::scan(const Revolution& revolution, const Trajectory& tra
   size_t total = 0;
   for (const Piece& piece : impl.pieces) total += piece.size;
   measurement.scan.points.reserve(total);
-  measurement.truth.reserve(total);
+  if (impl.wants_truth) measurement.truth.reserve(total);
   for (const Piece& piece : impl.pieces) {
     const LidarPoint* const points = piece.points.data();
-    const PointTruth* const truth = piece.truth.data();
     measurement.scan.points.insert(measurement.scan.points.end(), points, points + piece.size);
+    if (!impl.wants_truth) continue;
+    const PointTruth* const truth = piece.truth.data();
     measurement.truth.insert(measurement.truth.end(), truth, truth + piece.size);
   }
   return measurement;

@@ -28,6 +28,8 @@ class Lidar {
   Time begin(const Revolution& revolution) const;  ///< first firing
   Time end(const Revolution& revolution) const;    ///< last firing
 
+  /// From here on scans come without the truth of their points.
+  void leave_out_truth();
   /// One revolution along the trajectory, which must cover it. The same for any number of threads.
   LidarMeasurement scan(const Revolution& revolution, const Trajectory& trajectory, const SE3& T_base_lidar);
   /// The rays of the beams' centres that scan() traces, packet by packet in its order.

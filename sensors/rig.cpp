@@ -76,9 +76,13 @@ void Rig::leave_out(TakenBefore taken) {
   impl_->taken = std::move(taken);
   if (!impl_->camera || !impl_->taken.image) return;
   impl_->camera->leave_out([this](Time true_stamp) {
-    return impl_->taken.image(impl_->clocks.stamp(SensorKind::camera, true_stamp,
-                                                  1 / impl_->config.sensors.camera.rate_hz));
+    return impl_->taken.image(
+        impl_->clocks.stamp(SensorKind::camera, true_stamp, 1 / impl_->config.sensors.camera.rate_hz));
   });
+}
+
+void Rig::leave_out_point_truth() {
+  impl_->lidar.leave_out_truth();
 }
 
 Time Rig::needed_from() const {

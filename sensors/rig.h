@@ -78,6 +78,8 @@ class Rig {
   Raycaster& raycaster();
   /// Before the first advance. Stamps are those that the sensors' clocks give.
   void leave_out(TakenBefore taken);
+  /// Before the first advance: scans come without the truth of their points.
+  void leave_out_point_truth();
 
  private:
   struct Impl;

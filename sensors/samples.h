@@ -26,7 +26,7 @@ struct LidarMeasurement {
   LidarScan scan;
   Time true_stamp;                ///< differs from scan.stamp where the sensor's clock is wrong
   SE3 T_world_lidar;              ///< truth at true_stamp
-  std::vector<PointTruth> truth;  ///< one per scan.points, same order
+  std::vector<PointTruth> truth;  ///< one per scan.points, same order; empty if it was left out
 };
 
 struct ImuMeasurement {

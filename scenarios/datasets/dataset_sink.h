@@ -35,6 +35,7 @@ class DatasetSink {
   virtual bool needs_image(Time stamp) const = 0;
   /// PNG file of the image as the camera delivers it, which exists if it is not needed; empty: none is written here.
   virtual std::filesystem::path image_file(Time) const { return {}; }
+  virtual bool wants_point_truth() const { return false; }
   virtual bool wants_png() const { return false; }
   /// In order of `end`. Throws ResourceError.
   virtual void write(const DatasetSample& sample) = 0;

@@ -53,6 +53,8 @@ class Acquisition {
         rig_(world, scenario.rig, scenario.events.sensors, scenario.seeds.front(), scenario.lighting) {
     rig_.leave_out({.scan = [this](int64_t index, Time stamp) { return !needed(index, stamp); },
                     .image = [this](Time stamp) { return mean_grey_before(stamp); }});
+    if (std::none_of(sinks.begin(), sinks.end(), [](const auto& s) { return s->wants_point_truth(); }))
+      rig_.leave_out_point_truth();
   }
 
   SampleChunk next(const Motion& motion) {

@@ -18,6 +18,7 @@ class PointTruthSink final : public DatasetSink {
 
   bool needs_scan(int64_t index, Time) const override { return !std::filesystem::exists(file(index)); }
   bool needs_image(Time) const override { return false; }
+  bool wants_point_truth() const override { return true; }
   void write(const DatasetSample& sample) override;
   void finish() override {}
 

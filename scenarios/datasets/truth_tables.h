@@ -31,6 +31,7 @@ class DegeneracySink final : public DatasetSink {
   explicit DegeneracySink(const DatasetFacts& facts);
   bool needs_scan(int64_t, Time) const override { return true; }
   bool needs_image(Time) const override { return false; }
+  bool wants_point_truth() const override { return true; }
   void write(const DatasetSample& sample) override;
   void finish() override { table_.commit(); }
 

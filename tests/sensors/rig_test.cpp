@@ -132,6 +132,29 @@ TEST(Rig, ScansTakenBeforeAreLeftOutAndChangeNothingElse) {
   }
 }
 
+TEST(Rig, LeavingOutThePointsTruthChangesNothingElse) {
+  const World world = shapes::room_world({-6, -5, -1}, {7, 6, 2});
+  const Trajectory trajectory = shapes::along(shapes::lively, 0.5);
+  const auto scans = [&](bool truth) {
+    Rig rig(world, RigConfig{}, SensorEvents{}, 3);
+    if (!truth) rig.leave_out_point_truth();
+    std::vector<LidarMeasurement> all;
+    rig.advance(Time::from_seconds(0.5), trajectory, rolling, [&](Measurement&& m) {
+      if (auto* lidar = std::get_if<LidarMeasurement>(&m)) all.push_back(std::move(*lidar));
+    });
+    return all;
+  };
+  std::vector<LidarMeasurement> whole = scans(true);
+  const std::vector<LidarMeasurement> bare = scans(false);
+  ASSERT_EQ(bare.size(), whole.size());
+  for (size_t i = 0; i < whole.size(); ++i) {
+    EXPECT_EQ(whole[i].truth.size(), whole[i].scan.points.size());
+    EXPECT_TRUE(bare[i].truth.empty());
+    whole[i].truth.clear();
+    EXPECT_TRUE(describe(Measurement(bare[i])) == describe(Measurement(whole[i]))) << i;
+  }
+}
+
 TEST(Rig, WaitsForTheTrajectoryAndSaysWhatItNeeds) {
   const World world = room();
   Rig rig(world, RigConfig{}, SensorEvents{}, 1);
