@@ -103,14 +103,16 @@ struct VirtualDescriptorConfig {
 /// Which key scans are searched for and stored.
 struct SelectiveMemoryConfig {
   /// What a descriptor must differ from to be novel: the last one stored, as published; or all that are stored where a
-  /// search from here looks, recent ones too, so that a place passed again is not stored again.
+  /// search from here looks, recent ones too: so a place passed again is not stored again, and from each place that is
+  /// not stored a search finds one that is like it.
   enum class NovelTo { last, search };
   bool scene_recognition = true;  ///< off: every scene counts as distinct
   bool key_descriptors = true;    ///< off: every descriptor counts as novel
   /// Oblateness from which on a scene is structurally similar; 1 - 1 / the condition number of the block.
-  double alpha_t_th = 0.98, alpha_r_th = 0.98;
+  double alpha_t_th = 0.99, alpha_r_th = 0.99;
   NovelTo novel_to = NovelTo::search;
-  double key_distance = 0.25;  ///< d_th: a descriptor further from these is novel
+  /// d_th: a descriptor further from these is novel. Above max_distance, some would be neither stored nor found.
+  double key_distance = 0.3;
   void fields(Fields& f);
 };
 
@@ -122,8 +124,9 @@ struct VsSlamLoopConfig {
   double exclude_recent_s = 30.0;
   int exclude_recent_scans = 30;
   /// Only places are searched from which odometry can have drifted to within this distance of the query (see
-  /// verification.max_gap_m): a look-alike across the building must not outbid the place itself. 0: all.
-  double search_reach_m = 5.0;
+  /// verification.max_gap_m): a look-alike across the building must not outbid the place itself. Not less than the
+  /// reach of the virtual descriptors, N M, and the 2-3 m that a descriptor bears. 0: all.
+  double search_reach_m = 10.0;
   VirtualDescriptorConfig virtual_descriptors;
   SelectiveMemoryConfig memory;
   /// ICP's fitness is a weak test in corridors, which fit each other: the scan must also overlap with the map,

@@ -22,14 +22,16 @@ void VsSlamDetector::remember(const std::vector<KeyScan>& keys) {
   if (decision_->stored()) database_.add(key.id, key.stamp, query_.front().context);
 }
 
-// The last one stored; and those stored near the newest key scan, made however recently.
+// What is stored where a search from the newest key scan looks, made however recently: being like a descriptor further
+// off would leave a scan to which no search leads. As published, the last one stored.
 std::vector<const ScanContext*> VsSlamDetector::to_differ_from(const std::vector<KeyScan>& keys) const {
   const std::vector<DescriptorDatabase::Entry>& entries = database_.entries();
+  const bool only_last = config_.memory.novel_to == SelectiveMemoryConfig::NovelTo::last;
   std::vector<const ScanContext*> stored;
   for (size_t i = 0; i < entries.size(); ++i) {
-    const bool near = config_.memory.novel_to == SelectiveMemoryConfig::NovelTo::search &&
-                      within_reach(keys.back(), keys[static_cast<size_t>(entries[i].key)]);
-    if (near || i + 1 == entries.size()) stored.push_back(&entries[i].context);
+    const bool counts = only_last ? i + 1 == entries.size()
+                                  : within_reach(keys.back(), keys[static_cast<size_t>(entries[i].key)]);
+    if (counts) stored.push_back(&entries[i].context);
   }
   return stored;
 }

@@ -19,8 +19,21 @@ struct Drive {
   std::vector<SE3> truth;  // T_map_base without drift
 };
 
+/// As seen from there, without drift. Its scene counts as distinct.
+inline KeyScan key_scan_in(const TestRoom& room, int id, Time stamp, const SE3& T_map_base) {
+  KeyScan key;
+  key.id = id;
+  key.stamp = stamp;
+  key.points_lidar = share(scan_room(room, T_map_base * kBaseLidar));
+  key.features_lidar = share(voxel_means(*key.points_lidar, 0.3));
+  key.information = analyse_information(Vec6(300, 350, 400, 300, 350, 400).asDiagonal());
+  key.T_map_base = key.T_odom_base = T_map_base;
+  key.way_m = id;  // a key scan every metre
+  return key;
+}
+
 /// Laps on a circle in a room, a key scan every metre and 1.5 s; every second lap in the other direction.
-/// The belief drifts along x. Laps after the first run `aside_m` further out. All scenes count as distinct.
+/// The belief drifts along x. Laps after the first run `aside_m` further out.
 inline Drive laps(int count, double drift_m_per_key, double aside_m = 0) {
   Drive drive;
   for (int id = 0; id < count; ++id) {
@@ -31,16 +44,21 @@ inline Drive laps(int count, double drift_m_per_key, double aside_m = 0) {
     const SE3 T_map_base =
         planar(radius_m * std::cos(angle), radius_m * std::sin(angle), angle + (back ? -M_PI / 2 : M_PI / 2),
                kMountHeight - kBaseLidar.translation.z());
-    KeyScan key;
-    key.id = id;
-    key.stamp = Time::from_seconds(1.5 * id);
-    key.points_lidar = share(scan_room(cluttered_room(), T_map_base * kBaseLidar));
-    key.features_lidar = share(voxel_means(*key.points_lidar, 0.3));
-    key.information = analyse_information(Vec6(300, 350, 400, 300, 350, 400).asDiagonal());
+    KeyScan key = key_scan_in(cluttered_room(), id, Time::from_seconds(1.5 * id), T_map_base);
     key.T_map_base = SE3(Quat::Identity(), {drift_m_per_key * id, 0, 0}) * T_map_base;
     key.T_odom_base = key.T_map_base;
-    if (id > 0) key.way_m = drive.keys.back().way_m + 1;
     drive.keys.push_back(std::move(key));
+    drive.truth.push_back(T_map_base);
+  }
+  return drive;
+}
+
+/// Along the middle of a long corridor, a key scan every metre and second.
+inline Drive along_corridor(int count) {
+  Drive drive;
+  for (int id = 0; id < count; ++id) {
+    const SE3 T_map_base = planar(id - count / 2.0, 0, 0, kMountHeight - kBaseLidar.translation.z());
+    drive.keys.push_back(key_scan_in(long_corridor(), id, Time::from_seconds(id), T_map_base));
     drive.truth.push_back(T_map_base);
   }
   return drive;

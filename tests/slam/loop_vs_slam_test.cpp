@@ -1,6 +1,7 @@
 // Virtual descriptors, selective memory, and the methods made of them.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
 #include "slam/loop/selective_memory.h"
@@ -71,9 +72,9 @@ TEST(SelectiveMemory, SimilarScenesAreNotDistinct) {
     return decide({}, information(alpha_t, alpha_r), query, {}).distinct;
   };
   EXPECT_TRUE(distinct(0.5, 0.5));
-  EXPECT_TRUE(distinct(0.979, 0.979));
-  EXPECT_FALSE(distinct(0.981, 0.5));
-  EXPECT_FALSE(distinct(0.5, 0.981));
+  EXPECT_TRUE(distinct(0.989, 0.989));
+  EXPECT_FALSE(distinct(0.991, 0.5));
+  EXPECT_FALSE(distinct(0.5, 0.991));
   EXPECT_FALSE(decide({}, Information{}, query, {}).distinct);  // no information at all
   SelectiveMemoryConfig off;
   off.scene_recognition = false;
@@ -158,6 +159,30 @@ TEST(VsSlam, APlacePassedAgainIsNotStoredAgain) {
   EXPECT_GT(stored(last, 25), 2u);
   EXPECT_LE(stored(search, 75), stored(search, 25) + 1);
   EXPECT_GE(stored(last, 75), 2 * stored(last, 25));
+}
+
+// Along a corridor all scans are like the first: unless it counts only where a search looks, it is the only one stored,
+// and nothing is found further on.
+TEST(VsSlam, EveryKeyScanIsLikeOneThatASearchFromThereReaches) {
+  const Drive drive = along_corridor(60);
+  const auto stored_keys = [&](SelectiveMemoryConfig::NovelTo novel_to) {
+    LoopConfig config;
+    config.vs_slam.search_reach_m = 6;
+    config.vs_slam.memory.novel_to = novel_to;
+    LoopCloser closer(config, Method::vs_slam, kLidar, nullptr);
+    play(closer, drive);
+    std::vector<int> keys;
+    for (const StoredDescriptor& descriptor : closer.stored()) keys.push_back(descriptor.key);
+    return keys;
+  };
+  using enum SelectiveMemoryConfig::NovelTo;
+  EXPECT_EQ(stored_keys(last).size(), 1u);
+  const std::vector<int> keys = stored_keys(search);
+  constexpr double kAllowedGap_m = 1 + 0.01 * 60;
+  for (const KeyScan& key : drive.keys)
+    EXPECT_TRUE(std::any_of(keys.begin(), keys.end(), [&](int stored) {
+      return std::abs(stored - key.id) <= 6 + kAllowedGap_m;  // a key scan every metre
+    })) << key.id;
 }
 
 TEST(VsSlam, StoringAndSearchingNothingIsNoLoopClosing) {
