@@ -6,7 +6,7 @@ namespace vsslam {
 struct MemoryDecision {
   bool distinct =
       true;  ///< s = 1: the scene is not structurally similar along some direction; else not searched
-  bool novel = true;                                 ///< m = 1: unlike the last stored descriptor (6)
+  bool novel = true;                                 ///< m = 1: unlike what is stored (6)
   bool stored() const { return distinct && novel; }  ///< tau = s m (7)
 };
 
