@@ -4,8 +4,8 @@
 namespace vsslam {
 
 struct MemoryDecision {
-  bool distinct =
-      true;  ///< s = 1: the scene is not structurally similar along some direction; else not searched
+  /// s = 1: the scene is not structurally similar along some direction; else it is not searched for.
+  bool distinct = true;
   bool novel = true;                                 ///< m = 1: unlike what is stored (6)
   bool stored() const { return distinct && novel; }  ///< tau = s m (7)
 };
