@@ -30,7 +30,7 @@ struct Odometry::Impl {
   LidarOdometry lidar;
   ImuTrack imu_before_start;
   std::optional<StampedPose> last_odom_base;  // of the last scan
-  int64_t scans = 0;
+  OdometryHealth health;
 
   Impl(const SlamConfig& slam_config, const RigCalibration& rig_calibration, StageClock* stage_clock)
       : config(slam_config),
@@ -81,7 +81,7 @@ OdometryScan Odometry::Impl::add(const LidarScan& scan) {
   result.end = scan.end;
   ScanReport& report = result.report;
   report.stamp = scan.stamp;
-  report.scan = scans++;
+  report.scan = health.scans++;
   report.T_odom_base = T_odom_base;
   report.information = registration.information;
   report.correspondences = registration.correspondences;
@@ -89,6 +89,8 @@ OdometryScan Odometry::Impl::add(const LidarScan& scan) {
   report.converged = registration.converged;
   report.degenerate_directions = registration.degeneracy.directions;
   report.used_prior_only = registration.used_prior_only;
+  if (report.used_prior_only) ++health.scans_prior_only;
+  if (!report.converged) ++health.scans_unconverged;
   result.visual = prior->visual_report();
   // 6 far enough from the last key scan? then it enters the local map
   if (lidar.wants_key(T_odom_base)) make_key(scan, thin, std::move(points_lidar), result);
@@ -169,6 +171,9 @@ void Odometry::add(const CameraFrame& image) {
 }
 OdometryScan Odometry::add(const LidarScan& scan) {
   return impl_->add(scan);
+}
+const OdometryHealth& Odometry::health() const {
+  return impl_->health;
 }
 
 }  // namespace vsslam

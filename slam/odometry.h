@@ -10,6 +10,7 @@
 #include "core/samples.h"
 #include "core/stage_clock.h"
 #include "slam/lidar/cloud.h"
+#include "slam/odometry_health.h"
 #include "slam/scan_report.h"
 #include "slam/slam_config.h"
 
@@ -36,6 +37,8 @@ class Odometry {
   void add(const CameraFrame& image);
   /// Samples of the other sensors up to scan.end should have been added before.
   OdometryScan add(const LidarScan& scan);
+  /// So far.
+  const OdometryHealth& health() const;
 
  private:
   struct Impl;

@@ -1,0 +1,29 @@
+// What the front end itself says of how it fared: what was not seen, not believed, lost, and repaired.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/time.h"
+
+namespace vsslam {
+
+struct OdometryHealth {
+  int64_t scans = 0;
+  int64_t scans_prior_only = 0;  ///< the LiDAR gave nothing: the prior alone gave the pose
+  int64_t scans_unconverged = 0;
+  int64_t prior_refused = 0;     ///< scans whose prior contradicted the LiDAR and was not believed
+  int64_t imu_repaired = 0;      ///< samples whose unit was wrong beyond doubt, and was set right
+  /// A stretch of scans in which the pose was not known well enough to be worth a figure.
+  struct LostSpan {
+    Time begin, end;    ///< stamps of its first and last scan
+    int64_t scans = 0;
+    std::string why;    ///< "too few planes", "no overlap with the map", ...
+  };
+  std::vector<LostSpan> lost;
+  std::vector<std::string> repairs;   ///< what was certain and set right, one line each, in order
+  std::vector<std::string> warnings;  ///< what is doubtful or makes the result worthless, one line each, in order
+};
+
+}  // namespace vsslam
