@@ -57,6 +57,8 @@ std::string nearest(std::string_view word, const std::vector<std::string>& candi
 
 namespace {
 
+constexpr const char* kAutomatic = "automatic";
+
 std::string join(const std::vector<std::string>& words) {
   return fmt::format("{}", fmt::join(words, ", "));
 }
@@ -103,6 +105,19 @@ class Loader final : public Fields {
  protected:
   void number(const char* key, double& value, Range range) override {
     if (const YAML::Node n = take(key)) value = to_number(n, key, range);
+  }
+  void number_or_automatic(const char* key, std::optional<double>& value, Range range) override {
+    const YAML::Node n = take(key);
+    if (!n) return;
+    double parsed = 0;
+    if (n.IsScalar() && n.Scalar() == kAutomatic) {
+      value.reset();
+    } else if (n.IsScalar() && parse_number(n.Scalar(), parsed)) {
+      check_range(n, key, parsed, range);
+      value = parsed;
+    } else {
+      fail_type(n, key, fmt::format("a number or \"{}\"", kAutomatic));
+    }
   }
   void integer(const char* key, int64_t& value, Range range) override {
     const YAML::Node n = take(key);
@@ -309,6 +324,9 @@ class Saver final : public Fields {
 
  protected:
   void number(const char* key, double& value, Range) override { put(key) << fmt::format("{}", value); }
+  void number_or_automatic(const char* key, std::optional<double>& value, Range) override {
+    put(key) << (value ? fmt::format("{}", *value) : kAutomatic);
+  }
   void integer(const char* key, int64_t& value, Range) override { put(key) << fmt::format("{}", value); }
   void unsigned_integer(const char* key, uint64_t& value) override { put(key) << fmt::format("{}", value); }
   void boolean(const char* key, bool& value) override { put(key) << (value ? "true" : "false"); }

@@ -68,6 +68,11 @@ class Fields {
     numbers(key, value.data(), 2, range);
   }
 
+  /// A number, or the word `automatic` for nullopt: the program derives it.
+  void automatic(const char* key, std::optional<double>& value, Range range = any_value()) {
+    number_or_automatic(key, value, range);
+  }
+
   /// A nested mapping.
   template <class T>
     requires requires(T& t, Fields& f) { t.fields(f); }
@@ -135,6 +140,7 @@ class Fields {
 
  protected:
   virtual void number(const char* key, double& value, Range range) = 0;
+  virtual void number_or_automatic(const char* key, std::optional<double>& value, Range range) = 0;
   virtual void integer(const char* key, int64_t& value, Range range) = 0;
   virtual void unsigned_integer(const char* key, uint64_t& value) = 0;
   virtual void boolean(const char* key, bool& value) = 0;

@@ -1,10 +1,17 @@
 #include "slam/odometry.h"
 
+#include <fmt/format.h>
+
 #include <optional>
 #include <utility>
 
+#include "slam/inertial/fix_history.h"
 #include "slam/inertial/imu_track.h"
+#include "slam/inertial/imu_units.h"
+#include "slam/inertial/pose_covariance.h"
+#include "slam/inertial/prior_trust.h"
 #include "slam/inertial/rest_alignment.h"
+#include "slam/lidar/surface_features.h"
 #include "slam/lidar/undistort.h"
 #include "slam/map/map_cloud.h"
 #include "slam/vision/vio_prior.h"
@@ -20,6 +27,24 @@ std::unique_ptr<MotionPrior> make_prior(const SlamConfig& config, const RigCalib
   return make_motion_prior(config.prior, config.inertial, rig);
 }
 
+// Whether its points were fired at different times.
+bool rolls(const LidarScan& scan) {
+  return !scan.points.empty() && scan.points.back().time_s > 0;
+}
+
+MotionPath steady_motion(const Vec6& twist, Time begin, Time end) {
+  MotionPath path(begin);
+  path.append(end, SE3::exp(twist * seconds_between(begin, end)));
+  return path;
+}
+
+// What is made of a scan, given how the robot moved while it was taken.
+struct ScanView {
+  Cloud points_lidar;
+  std::optional<RingOrder> order;  // of a scan with rings
+  std::vector<Feature> thin;
+};
+
 }  // namespace
 
 struct Odometry::Impl {
@@ -27,9 +52,13 @@ struct Odometry::Impl {
   RigCalibration rig;
   StageClock* clock;
   std::unique_ptr<MotionPrior> prior;
+  FixHistory coasting;  // the prior of a robot without other sensors
+  PriorTrust trust;
+  ImuUnits imu_units;
   LidarOdometry lidar;
   ImuTrack imu_before_start;
   std::optional<StampedPose> last_odom_base;  // of the last scan
+  std::optional<LidarScan> first_scan;        // until it is known how the robot moved then
   OdometryHealth health;
 
   Impl(const SlamConfig& slam_config, const RigCalibration& rig_calibration, StageClock* stage_clock)
@@ -37,17 +66,30 @@ struct Odometry::Impl {
         rig(rig_calibration),
         clock(stage_clock),
         prior(make_prior(config, rig, clock)),
-        lidar(config.odometry),
+        coasting(config.inertial),
+        imu_units(rig.imu),
+        lidar(config.odometry, rig.lidar.range_sigma_m),
         imu_before_start(track_limits(config.inertial)) {}
 
+  // Where a prior says that the scan was taken, and how the robot moved until its end.
+  struct Prediction {
+    SE3 T_odom_base;
+    Mat6 covariance = 1e-8 * Mat6::Identity();  // right perturbation
+    MotionPath motion{Time{}};                  // since scan.stamp
+  };
   SE3 start_pose();
-  SE3 predicted_pose(Time stamp) const;
-  MotionPath motion_during(const LidarScan& scan) const;
-  void correct_prior(Time stamp, const SE3& T_odom_base, const Registration& registration);
-  std::vector<Feature> features(const char* stage, const LidarScan& scan, const Cloud& points_lidar,
+  MotionPath believed_path(Time begin, Time end) const;
+  Prediction predict(const LidarScan& scan, const MotionPath& path, const Mat6& covariance) const;
+  Prediction predict(const LidarScan& scan);
+  ScanView view(const LidarScan& scan, const MotionPath& motion);
+  Registration align(const ScanView& view, const Prediction& prediction, Time stamp);
+  bool settle_motion(const LidarScan& scan, Prediction& prediction, ScanView& view, Registration& registration);
+  void judge_prior(const LidarScan& scan, const Prediction& prediction, const SE3& T_odom_base, const Mat6& known);
+  void restart_prior(Time stamp);
+  void correct_prior(Time stamp, const SE3& T_odom_base, const Mat6& covariance, const Registration& registration);
+  std::vector<Feature> features(const char* stage, const Cloud& points_lidar, std::optional<RingOrder>& order,
                                 double voxel_m) const;
-  void make_key(const LidarScan& scan, const std::vector<Feature>& thin, Cloud points_lidar,
-                OdometryScan& result);
+  void make_key(ScanView& view, OdometryScan& result);
   OdometryScan add(const LidarScan& scan);
 };
 
@@ -55,26 +97,19 @@ struct Odometry::Impl {
 OdometryScan Odometry::Impl::add(const LidarScan& scan) {
   const StageTimer whole(clock, "odometry");
   // 1 prior: where the other sensors say the scan was taken, and how the robot moved during it
-  const SE3 T_odom_base_prior = last_odom_base ? predicted_pose(scan.stamp) : start_pose();
-  const MotionPath motion = motion_during(scan);
-  // 2 undistort: all points to the scan's stamp
-  Cloud points_lidar;
-  {
-    const StageTimer timer(clock, "undistort");
-    points_lidar = undistort(scan, motion, rig.lidar.T_base_lidar);
-  }
-  // 3 features: planar points, thinned
-  const std::vector<Feature> thin = features("features", scan, points_lidar, config.odometry.voxel_m);
-  // 4 register: point to plane against the local map; blind directions keep the prior
-  Registration registration;
-  {
-    const StageTimer timer(clock, "register");
-    registration = lidar.align(thin, T_odom_base_prior * rig.lidar.T_base_lidar);
-  }
+  Prediction prediction = predict(scan);
+  // 2 undistort: all points to the scan's stamp; 3 features: planar points, thinned
+  ScanView seen = view(scan, prediction.motion);
+  // 4 register: point to plane against the local map, weighed against the prior
+  Registration registration = align(seen, prediction, scan.stamp);
+  // ... and again if the robot moved otherwise than the prior said, which the points were undistorted by
+  settle_motion(scan, prediction, seen, registration);
   const SE3 T_odom_base = registration.T_odom_lidar * rig.lidar.T_base_lidar.inverse();
-  // 5 what the LiDAR has seen corrects the prior's biases and velocity
-  correct_prior(scan.stamp, T_odom_base, registration);
-  prior->add_scan(scan.stamp, points_lidar, T_odom_base);
+  const Mat6 covariance = moved_covariance(registration.covariance, rig.lidar.T_base_lidar.inverse());
+  // 5 what the LiDAR has seen tells what the prior is worth, and corrects its biases and velocity
+  if (!registration.used_prior_only) judge_prior(scan, prediction, T_odom_base, covariance);
+  correct_prior(scan.stamp, T_odom_base, covariance, registration);
+  prior->add_scan(scan.stamp, seen.points_lidar, T_odom_base);
   last_odom_base = StampedPose{scan.stamp, T_odom_base};
 
   OdometryScan result;
@@ -93,7 +128,7 @@ OdometryScan Odometry::Impl::add(const LidarScan& scan) {
   if (!report.converged) ++health.scans_unconverged;
   result.visual = prior->visual_report();
   // 6 far enough from the last key scan? then it enters the local map
-  if (lidar.wants_key(T_odom_base)) make_key(scan, thin, std::move(points_lidar), result);
+  if (lidar.wants_key(T_odom_base)) make_key(seen, result);
   return result;
 }
 
@@ -103,27 +138,129 @@ SE3 Odometry::Impl::start_pose() {
   const InitialState state{SE3(rest.q_odom_base, Vec3::Zero()), rest.gyro_bias_radps,
                            rest.gyro_bias_sigma_radps, rest.at_rest, rest.accel_bias_mps2};
   prior->start(state);
+  coasting.start(rest.at_rest);
   imu_before_start.clear();
   return state.T_odom_base;
 }
 
-SE3 Odometry::Impl::predicted_pose(Time stamp) const {
-  return last_odom_base->pose * prior->path(last_odom_base->stamp, stamp).end_pose();
+MotionPath Odometry::Impl::believed_path(Time begin, Time end) const {
+  return trust.believed() ? prior->path(begin, end) : steady_motion(coasting.twist(), begin, end);
 }
 
-// The prior's state is still that of the last scan: its motion from there to the end, seen from this scan's
-// stamp.
-MotionPath Odometry::Impl::motion_during(const LidarScan& scan) const {
-  const Time from = last_odom_base ? last_odom_base->stamp : scan.stamp;
-  const MotionPath since_last = prior->path(from, scan.end);
-  const SE3 T_begin_last = since_last.at(scan.stamp).inverse();
-  MotionPath motion(scan.stamp);
-  for (const StampedPose& knot : since_last.knots()) motion.append(knot.stamp, T_begin_last * knot.pose);
-  return motion;
+// `path` goes from the last scan to the end of this one.
+Odometry::Impl::Prediction Odometry::Impl::predict(const LidarScan& scan, const MotionPath& path,
+                                                   const Mat6& covariance) const {
+  const SE3 T_last_begin = path.at(scan.stamp);
+  Prediction prediction{last_odom_base->pose * T_last_begin, covariance, MotionPath(scan.stamp)};
+  const SE3 T_begin_last = T_last_begin.inverse();
+  for (const StampedPose& knot : path.knots())
+    prediction.motion.append(knot.stamp, T_begin_last * knot.pose);
+  return prediction;
 }
 
-void Odometry::Impl::correct_prior(Time stamp, const SE3& T_odom_base, const Registration& registration) {
-  OdometryFix fix{stamp, T_odom_base, Mat3::Zero(), Mat3::Zero()};
+Odometry::Impl::Prediction Odometry::Impl::predict(const LidarScan& scan) {
+  if (!last_odom_base) {
+    Prediction prediction{.T_odom_base = start_pose()};
+    prediction.motion = prior->path(scan.stamp, scan.end);
+    return prediction;
+  }
+  const Mat6 covariance =
+      trust.believed() ? Mat6(trust.inflation() * prior->covariance(scan.stamp)) : coasting.covariance(scan.stamp);
+  return predict(scan, believed_path(last_odom_base->stamp, scan.end), covariance);
+}
+
+ScanView Odometry::Impl::view(const LidarScan& scan, const MotionPath& motion) {
+  ScanView seen;
+  {
+    const StageTimer timer(clock, "undistort");
+    seen.points_lidar = undistort(scan, motion, rig.lidar.T_base_lidar);
+  }
+  if (scan.rings_known) {
+    seen.order.emplace(scan, seen.points_lidar, range_step_m(lidar.range_sigma_m(), config.odometry.features));
+    lidar.listen(measured_range_sigma_m(*seen.order));
+  } else {
+    lidar.listen(measured_surface_sigma_m(seen.points_lidar, config.odometry.voxel_m, config.odometry.features));
+  }
+  seen.thin = features("features", seen.points_lidar, seen.order, config.odometry.voxel_m);
+  return seen;
+}
+
+Registration Odometry::Impl::align(const ScanView& seen, const Prediction& prediction, Time) {
+  const StageTimer timer(clock, "register");
+  const PosePrior around{prediction.T_odom_base * rig.lidar.T_base_lidar,
+                         moved_covariance(prediction.covariance, rig.lidar.T_base_lidar)};
+  if (lidar.has_map()) return lidar.align(seen.thin, around);
+  Registration first;  // it defines the frame
+  first.T_odom_lidar = around.T_odom_lidar;
+  first.covariance = around.covariance;
+  first.converged = true;
+  return first;
+}
+
+// A scan that was undistorted by a wrong motion is bent, and so registered a little off; what it shows of the motion is
+// nearer to the truth. Repeated until the two agree. The first scan of all, taken when nothing was known of the motion,
+// is set right together with the second. (As in MOLA: the twist is estimated with the pose.)
+bool Odometry::Impl::settle_motion(const LidarScan& scan, Prediction& prediction, ScanView& seen,
+                                   Registration& registration) {
+  constexpr double kBent_m = 0.05, kBent_rad = 0.01;  // over a scan: what features and gates bear without notice
+  constexpr int kRounds = 4;
+  const std::optional<LidarScan> first = std::exchange(first_scan, std::nullopt);
+  if (!last_odom_base) {
+    if (rolls(scan)) first_scan = scan;
+    return false;
+  }
+  if (registration.used_prior_only || !rolls(scan)) return false;
+  const double dt_s = seconds_between(last_odom_base->stamp, scan.stamp);
+  bool settled = false;
+  for (int round = 0; round < kRounds; ++round) {
+    const SE3 T_odom_base = registration.T_odom_lidar * rig.lidar.T_base_lidar.inverse();
+    const Vec6 twist = (last_odom_base->pose.inverse() * T_odom_base).log() / dt_s;
+    const MotionPath shown = steady_motion(twist, scan.stamp, scan.end);
+    const SE3 difference = prediction.motion.at(scan.end).inverse() * shown.end_pose();
+    if (difference.translation.norm() < kBent_m && difference.angle() < kBent_rad) break;
+    prediction.motion = shown;
+    if (first) {
+      ScanView again = view(*first, steady_motion(twist, first->stamp, first->end));
+      lidar.replace_first_key(features("features_of_key", again.points_lidar, again.order, config.odometry.map_voxel_m),
+                              last_odom_base->pose, rig.lidar.T_base_lidar);
+    }
+    seen = view(scan, prediction.motion);
+    registration = align(seen, prediction, scan.stamp);
+    settled = true;
+    if (registration.used_prior_only) break;
+  }
+  return settled;
+}
+
+void Odometry::Impl::judge_prior(const LidarScan& scan, const Prediction& prediction, const SE3& T_odom_base,
+                                 const Mat6& known) {
+  if (!last_odom_base) return;
+  const Time last = last_odom_base->stamp;
+  const auto step_from = [&](const SE3& predicted) { return Vec6((predicted.inverse() * T_odom_base).log()); };
+  const SE3 by_prior = last_odom_base->pose * prior->path(last, scan.stamp).end_pose();
+  const SE3 by_velocity =
+      last_odom_base->pose * SE3::exp(coasting.twist() * seconds_between(last, scan.stamp));
+  const bool before = trust.believed();
+  trust.add(step_from(by_prior), prior->covariance(scan.stamp), known, step_from(by_velocity));
+  if (!trust.believed()) ++health.prior_refused;
+  if (before && !trust.believed())
+    health.warnings.push_back(fmt::format(
+        "prior: from {:.1f} s on it contradicts the LiDAR, and is not believed", scan.stamp.seconds()));
+  if (imu_units.compare(last, scan.stamp, last_odom_base->pose.inverse() * T_odom_base)) restart_prior(last);
+  (void)prediction;
+}
+
+// What it had learnt came from samples in the wrong unit.
+void Odometry::Impl::restart_prior(Time stamp) {
+  prior = make_prior(config, rig, clock);
+  prior->start({.T_odom_base = last_odom_base->pose});
+  prior->correct({.stamp = stamp, .T_odom_base = last_odom_base->pose});
+  trust = PriorTrust();
+}
+
+void Odometry::Impl::correct_prior(Time stamp, const SE3& T_odom_base, const Mat6& covariance,
+                                   const Registration& registration) {
+  OdometryFix fix{stamp, T_odom_base, covariance, Mat3::Zero(), Mat3::Zero()};
   if (!registration.used_prior_only) {
     const Mat3 R_base_lidar = rig.lidar.T_base_lidar.matrix3();
     fix.observed_rotation =
@@ -132,27 +269,29 @@ void Odometry::Impl::correct_prior(Time stamp, const SE3& T_odom_base, const Reg
         R_base_lidar * registration.degeneracy.observed_translation() * R_base_lidar.transpose();
   }
   prior->correct(fix);
+  coasting.add(fix);
 }
 
-std::vector<Feature> Odometry::Impl::features(const char* stage, const LidarScan& scan,
-                                              const Cloud& points_lidar, double voxel_m) const {
+std::vector<Feature> Odometry::Impl::features(const char* stage, const Cloud& points_lidar,
+                                              std::optional<RingOrder>& order, double voxel_m) const {
   const StageTimer timer(clock, stage);
-  return select_thin_features(scan, points_lidar, rig.lidar.rings, config.odometry.features, voxel_m);
+  const double sigma_m = lidar.range_sigma_m();
+  if (order) return select_thin_features(*order, sigma_m, config.odometry.features, voxel_m);
+  return select_surface_features(points_lidar, sigma_m, voxel_m, config.odometry.features);
 }
 
-void Odometry::Impl::make_key(const LidarScan& scan, const std::vector<Feature>& thin, Cloud points_lidar,
-                              OdometryScan& result) {
+void Odometry::Impl::make_key(ScanView& seen, OdometryScan& result) {
   const std::vector<Feature> dense =
-      features("features_of_key", scan, points_lidar, config.odometry.map_voxel_m);
+      features("features_of_key", seen.points_lidar, seen.order, config.odometry.map_voxel_m);
   const StageTimer timer(clock, "map");
   lidar.insert_key(dense, result.report.T_odom_base, rig.lidar.T_base_lidar);
   Cloud features_lidar;
-  features_lidar.reserve(thin.size());
-  for (const Feature& feature : thin) features_lidar.push_back(feature.point_lidar);
+  features_lidar.reserve(seen.thin.size());
+  for (const Feature& feature : seen.thin) features_lidar.push_back(feature.point_lidar);
   result.is_key = true;
   result.features_lidar = share(std::move(features_lidar));
-  result.map_points_lidar = share(thin_cloud(points_lidar, 0.5 * config.odometry.voxel_m));
-  result.points_lidar = share(std::move(points_lidar));
+  result.map_points_lidar = share(thin_cloud(seen.points_lidar, 0.5 * config.odometry.voxel_m));
+  result.points_lidar = share(std::move(seen.points_lidar));
 }
 
 Odometry::Odometry(const SlamConfig& config, const RigCalibration& rig, StageClock* clock)
@@ -160,8 +299,10 @@ Odometry::Odometry(const SlamConfig& config, const RigCalibration& rig, StageClo
 Odometry::~Odometry() = default;
 
 void Odometry::add(const ImuSample& sample) {
-  if (!impl_->last_odom_base) impl_->imu_before_start.add(sample);
-  impl_->prior->add(sample);
+  const ImuSample repaired = impl_->imu_units.repaired(sample);
+  if (impl_->imu_units.repairs()) ++impl_->health.imu_repaired;
+  if (!impl_->last_odom_base) impl_->imu_before_start.add(repaired);
+  impl_->prior->add(repaired);
 }
 void Odometry::add(const WheelSample& sample) {
   impl_->prior->add(sample);
@@ -172,8 +313,13 @@ void Odometry::add(const CameraFrame& image) {
 OdometryScan Odometry::add(const LidarScan& scan) {
   return impl_->add(scan);
 }
-const OdometryHealth& Odometry::health() const {
-  return impl_->health;
+
+OdometryHealth Odometry::health() const {
+  OdometryHealth health = impl_->health;
+  health.repairs = impl_->imu_units.repairs_said();
+  const std::vector<std::string>& imu = impl_->imu_units.warnings();
+  health.warnings.insert(health.warnings.begin(), imu.begin(), imu.end());
+  return health;
 }
 
 }  // namespace vsslam

@@ -38,7 +38,7 @@ class Odometry {
   /// Samples of the other sensors up to scan.end should have been added before.
   OdometryScan add(const LidarScan& scan);
   /// So far.
-  const OdometryHealth& health() const;
+  OdometryHealth health() const;
 
  private:
   struct Impl;

@@ -1,20 +1,33 @@
 #include "slam/inertial/dead_reckoning.h"
 
 #include <algorithm>
+#include <cmath>
+
+#include "slam/inertial/pose_covariance.h"
 
 namespace vsslam {
 
+namespace {
+
+constexpr double kWheelStep_m = 1e-3;  // of an encoder, and of a wheel that rolls over the grain of the floor
+
+}  // namespace
+
 DeadReckoning::DeadReckoning(const InertialConfig& config, const RigCalibration& rig, bool use_gyro,
                              bool use_wheels)
-    : use_gyro_(use_gyro),
+    : config_(config),
+      imu_sheet_(rig.imu),
+      use_gyro_(use_gyro),
       use_wheels_(use_wheels),
       T_base_imu_(rig.imu.T_base_imu),
       imu_(track_limits(config)),
       wheels_(rig.wheels, config.max_gap_s),
-      gyro_bias_(rig.imu.gyro_bias_walk_radps2_rthz, config.lidar_rotation_sigma_rad) {}
+      gyro_bias_(rig.imu.gyro_bias_walk_radps2_rthz),
+      fixes_(config) {}
 
 void DeadReckoning::start(const InitialState& state) {
   gyro_bias_.start(state.gyro_bias_radps, state.gyro_bias_sigma_radps);
+  fixes_.start(state.at_rest);
 }
 
 void DeadReckoning::add(const ImuSample& sample) {
@@ -75,6 +88,37 @@ MotionPath DeadReckoning::path(Time begin, Time end) const {
   return path;
 }
 
+// What the sensors leave open, the velocity of the last fixes says.
+Mat6 DeadReckoning::covariance(Time end) const {
+  const auto& last = fixes_.last();
+  Mat6 covariance = fixes_.covariance(end);
+  if (!last || end <= last->stamp) return covariance;
+  const double dt_s = seconds_between(last->stamp, end);
+  const bool turned = imu_.at(last->stamp) && imu_.at(end);
+  const bool rolled = wheels_.at(last->stamp) && wheels_.at(end);
+  if (!turned && !rolled) return covariance;
+  const SE3 T_last_end = path(last->stamp, end).end_pose();
+  const Mat6 known = moved_covariance(last->covariance, T_last_end);
+  const double way_m = T_last_end.translation.norm();
+  if (turned) {
+    const double white = config_.imu_noise_factor * imu_sheet_.gyro_noise_radps_rthz;
+    covariance.topLeftCorner<3, 3>() = known.topLeftCorner<3, 3>();
+    covariance.diagonal().head<3>().array() += white * white * dt_s + gyro_bias_.variance() * dt_s * dt_s;
+  } else {
+    const double turn_rad = config_.wheel_turn_slip * T_last_end.angle() + 0.01 * dt_s;
+    covariance(2, 2) = known(2, 2) + turn_rad * turn_rad;
+  }
+  // Wheels say how far, not up or down, nor aside.
+  if (rolled) {
+    const double forward_m = config_.wheel_slip * way_m + kWheelStep_m, aside_m = 2 * forward_m;
+    covariance.bottomRightCorner<3, 3>() = known.bottomRightCorner<3, 3>();
+    covariance.diagonal().tail<3>() += Vec3(forward_m * forward_m, aside_m * aside_m, aside_m * aside_m);
+  }
+  covariance.topRightCorner<3, 3>().setZero();
+  covariance.bottomLeftCorner<3, 3>().setZero();
+  return covariance;
+}
+
 void DeadReckoning::correct(const OdometryFix& fix) {
   const auto& last = fixes_.last();
   if (use_gyro_ && last && fix.stamp > last->stamp && imu_.at(last->stamp) && imu_.at(fix.stamp)) {
@@ -83,6 +127,7 @@ void DeadReckoning::correct(const OdometryFix& fix) {
     const Mat3 R_imu_base = T_base_imu_.matrix3().transpose();
     gyro_bias_.correct(R_imu_base * so3_log(q_gyro.conjugate() * q_lidar),
                        R_imu_base * fix.observed_rotation * R_imu_base.transpose(),
+                       std::sqrt(fix.covariance.topLeftCorner<3, 3>().trace() / 3),
                        seconds_between(last->stamp, fix.stamp));
   }
   fixes_.add(fix);

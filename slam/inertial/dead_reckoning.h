@@ -18,6 +18,7 @@ class DeadReckoning : public MotionPrior {
   void add(const ImuSample& sample) override;
   void add(const WheelSample& sample) override;
   MotionPath path(Time begin, Time end) const override;
+  Mat6 covariance(Time end) const override;
   void correct(const OdometryFix& fix) override;
   const Vec3& gyro_bias_radps() const { return gyro_bias_.bias_radps(); }
   const FixHistory& fixes() const { return fixes_; }
@@ -27,6 +28,8 @@ class DeadReckoning : public MotionPrior {
   Vec3 omega_base(Time a, Time b, const Vec6& fallback) const;
   Vec3 step_base(Time a, Time b, const Vec6& fallback) const;
 
+  InertialConfig config_;
+  ImuCalibration imu_sheet_;
   bool use_gyro_, use_wheels_;
   SE3 T_base_imu_;
   ImuTrack imu_;

@@ -1,4 +1,5 @@
-// The last pose of the odometry and the velocity up to it: what any prior falls back on.
+// The last pose of the odometry and the velocity up to it: what any prior falls back on, and the prior
+// `constant_velocity` itself. A Kalman filter of pose and twist, whose poses the registrations give.
 #pragma once
 
 #include <optional>
@@ -9,23 +10,27 @@ namespace vsslam {
 
 class FixHistory {
  public:
-  /// The velocity is smoothed by half. An error e_k of a pose enters the next scan's undistortion as velocity,
-  /// and from there its pose, e_k+1 = -(e_k - e_k-1) / 2 unsmoothed, which rings for ever (a root at -1).
-  void add(const OdometryFix& fix) {
-    if (last_ && fix.stamp > last_->stamp) {
-      const Vec6 motion = (last_->T_odom_base.inverse() * fix.T_odom_base).log();
-      const Vec6 twist = motion / seconds_between(last_->stamp, fix.stamp);
-      twist_ = 0.5 * (twist_ + twist);
-    }
-    last_ = fix;
-  }
+  explicit FixHistory(const InertialConfig& config) : config_(config) {}
+
+  /// The twist before the first fix is zero, and is known that well if the robot is at rest.
+  void start(bool at_rest) { at_rest_ = at_rest; }
+  void add(const OdometryFix& fix);
+
   const std::optional<OdometryFix>& last() const { return last_; }
   /// Of the base, body frame, [rad/s; m/s]; zero until there are two fixes.
   const Vec6& twist() const { return twist_; }
+  /// Of T_odom_base at `end`, the twist continued from the last fix; right perturbation.
+  Mat6 covariance(Time end) const;
 
  private:
+  using Mat12 = Eigen::Matrix<double, 12, 12>;
+  Mat12 predicted(double dt_s) const;
+
+  InertialConfig config_;
   std::optional<OdometryFix> last_;
   Vec6 twist_ = Vec6::Zero();
+  bool at_rest_ = false, moving_known_ = false;
+  Mat12 P_ = Mat12::Zero();  // of [pose; twist]
 };
 
 }  // namespace vsslam

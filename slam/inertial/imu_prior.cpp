@@ -1,95 +1,181 @@
 #include "slam/inertial/imu_prior.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
+
+#include "slam/inertial/pose_covariance.h"
 
 namespace vsslam {
 
-ImuPrior::ImuPrior(const InertialConfig& config, const RigCalibration& rig)
-    : config_(config),
-      imu_calibration_(rig.imu),
-      imu_(track_limits(config)),
-      gyro_bias_(rig.imu.gyro_bias_walk_radps2_rthz, config.lidar_rotation_sigma_rad) {}
+namespace {
 
-void ImuPrior::start(const InitialState& state) {
-  gyro_bias_.start(state.gyro_bias_radps, state.gyro_bias_sigma_radps);
-  accel_bias_mps2_ = state.accel_bias_mps2;
-  state_.T_odom_imu = state.T_odom_base * imu_calibration_.T_base_imu;
-  velocity_variance_ = state.at_rest ? 1e-6 : 1.0;
+using Mat15 = Eigen::Matrix<double, 15, 15>;
+
+ImuCalibration believed(ImuCalibration imu, double noise_factor) {
+  imu.gyro_noise_radps_rthz *= noise_factor;
+  imu.accel_noise_mps2_rthz *= noise_factor;
+  return imu;
 }
 
-bool ImuPrior::predict(Time begin, Time end, State& state, MotionPath* path) const {
-  const State start = state;
-  const Vec3 gravity_odom(0, 0, -imu_calibration_.gravity_mps2);
-  const SE3& T_base_imu = imu_calibration_.T_base_imu;
-  ImuPreintegration motion(imu_calibration_, {gyro_bias_.bias_radps(), accel_bias_mps2_});
+double square(double x) {
+  return x * x;
+}
+
+// Derivative of the state after a preintegrated motion by the state before it (Forster et al. 2017, section VI); with
+// position perturbed in the body's frame.
+Mat15 transition(const ImuPreintegration& motion, const Mat3& R_before, const Mat3& R_after) {
+  const double dt = motion.dt_s();
+  const Mat3 R_j_i = motion.delta_R().toRotationMatrix().transpose();
+  const Mat3 R_j_odom = R_after.transpose();
+  const auto& J = motion.bias_jacobian();
+  Mat15 F = Mat15::Identity();
+  F.block<3, 3>(0, 0) = R_j_i;
+  F.block<3, 6>(0, 9) = J.topRows<3>();
+  F.block<3, 3>(3, 0) = -R_j_i * hat(motion.delta_p());
+  F.block<3, 3>(3, 3) = R_j_i;
+  F.block<3, 3>(3, 6) = dt * R_j_odom;
+  F.block<3, 6>(3, 9) = R_j_i * J.bottomRows<3>();
+  F.block<3, 3>(6, 0) = -R_before * hat(motion.delta_v());
+  F.block<3, 6>(6, 9) = R_before * J.middleRows<3>(3);
+  return F;
+}
+
+// Of the motion's own noise, in the errors of the state after it.
+Mat15 motion_noise(const ImuPreintegration& motion, const Mat3& R_before, const ImuCalibration& imu) {
+  const Mat3 R_j_i = motion.delta_R().toRotationMatrix().transpose();
+  Eigen::Matrix<double, 15, 9> G = Eigen::Matrix<double, 15, 9>::Zero();
+  G.block<3, 3>(0, 0).setIdentity();
+  G.block<3, 3>(6, 3) = R_before;
+  G.block<3, 3>(3, 6) = R_j_i;
+  Mat15 Q = G * motion.covariance() * G.transpose();
+  Q.diagonal().segment<3>(9).array() += square(imu.gyro_bias_walk_radps2_rthz) * motion.dt_s();
+  Q.diagonal().tail<3>().array() += square(imu.accel_bias_walk_mps3_rthz) * motion.dt_s();
+  return Q;
+}
+
+}  // namespace
+
+ImuPrior::ImuPrior(const InertialConfig& config, const RigCalibration& rig)
+    : config_(config),
+      sheet_(believed(rig.imu, config.imu_noise_factor)),
+      imu_(track_limits(config)),
+      fixes_(config) {}
+
+void ImuPrior::start(const InitialState& state) {
+  constexpr double kRestSpeed_mps = 1e-3, kYaw_rad = 1e-4;  // yaw 0 and the place define odom
+  constexpr double kMovingTilt_rad = 0.1;  // level by the mean specific force, while braking with 1 m/s^2
+  fixes_.start(state.at_rest);
+  start_bias_ = {state.gyro_bias_radps, state.accel_bias_mps2};
+  gyro_bias_sigma_radps_ = state.gyro_bias_sigma_radps;
+  state_.T_odom_imu = state.T_odom_base * sheet_.T_base_imu;
+  state_.bias = start_bias_;
+  const double bias = config_.accel_bias_sigma_mps2, g = sheet_.gravity_mps2;
+  const double tilt = state.at_rest ? bias / g : kMovingTilt_rad;
+  const Mat3 R_imu_odom = state_.T_odom_imu.matrix3().transpose();
+  const Mat3 tilts = R_imu_odom * Vec3(square(tilt), square(tilt), square(kYaw_rad)).asDiagonal() *
+                     R_imu_odom.transpose();
+  state_.P.setZero();
+  state_.P.topLeftCorner<3, 3>() = tilts;
+  state_.P.diagonal().segment<3>(3).setConstant(1e-8);
+  state_.P.diagonal().segment<3>(6).setConstant(
+      square(state.at_rest ? kRestSpeed_mps : config_.max_speed_mps / 3));
+  state_.P.diagonal().segment<3>(9).setConstant(square(gyro_bias_sigma_radps_));
+  state_.P.bottomRightCorner<3, 3>().diagonal().setConstant(square(bias));
+  if (!state.at_rest) return;
+  // At rest up was found from the specific force: f = g R' e_z + b, so a level bias of b is a tilt of b / g.
+  const Mat3 force = hat(R_imu_odom * Vec3(0, 0, g));  // d(R' g)/d(rotation)
+  const Mat3 noise = square(0.02 * bias) * Mat3::Identity();
+  Eigen::Matrix<double, 3, 15> H = Eigen::Matrix<double, 3, 15>::Zero();
+  H.leftCols<3>() = force;
+  H.rightCols<3>().setIdentity();
+  const Eigen::Matrix<double, 15, 3> K =
+      (H * state_.P * H.transpose() + noise).ldlt().solve(H * state_.P).transpose();
+  state_.P -= K * H * state_.P;
+  state_.P = 0.5 * (state_.P + state_.P.transpose()).eval();
+}
+
+std::optional<ImuPrior::State> ImuPrior::predict(Time begin, Time end, MotionPath* path) const {
+  const Vec3 gravity_odom(0, 0, -sheet_.gravity_mps2);
+  const SE3& T_base_imu = sheet_.T_base_imu;
+  ImuPreintegration motion(sheet_, state_.bias);
   auto before = imu_.at(begin);
-  if (!before) return false;
+  if (!before) return std::nullopt;
   std::vector<Time> stamps;
   for (const ImuSample& sample : imu_.samples())
     if (sample.stamp > begin && sample.stamp < end) stamps.push_back(sample.stamp);
   stamps.push_back(end);
+  const Quat& q = state_.T_odom_imu.rotation;
+  State state = state_;
   for (const Time stamp : stamps) {
     if (stamp <= before->stamp) continue;
     const auto now = imu_.at(stamp);
-    if (!now || seconds_between(before->stamp, stamp) > config_.max_gap_s) return false;
+    if (!now || seconds_between(before->stamp, stamp) > config_.max_gap_s) return std::nullopt;
     motion.add(seconds_between(before->stamp, stamp), before->gyro_radps, before->accel_mps2, now->gyro_radps,
                now->accel_mps2);
     before = now;
     const double dt = motion.dt_s();
-    const Quat& q = start.T_odom_imu.rotation;
-    state.v_odom = start.v_odom + gravity_odom * dt + q * motion.delta_v();
-    state.T_odom_imu = {q * motion.delta_R(), start.T_odom_imu.translation + start.v_odom * dt +
+    state.v_odom = state_.v_odom + gravity_odom * dt + q * motion.delta_v();
+    state.T_odom_imu = {q * motion.delta_R(), state_.T_odom_imu.translation + state_.v_odom * dt +
                                                   0.5 * gravity_odom * dt * dt + q * motion.delta_p()};
     if (path)
-      path->append(stamp, T_base_imu * start.T_odom_imu.inverse() * state.T_odom_imu * T_base_imu.inverse());
+      path->append(stamp, T_base_imu * state_.T_odom_imu.inverse() * state.T_odom_imu * T_base_imu.inverse());
   }
-  return true;
+  const Mat3 R = q.toRotationMatrix();
+  const Mat15 F = transition(motion, R, state.T_odom_imu.matrix3());
+  state.P = F * state_.P * F.transpose() + motion_noise(motion, R, sheet_);
+  return state;
 }
 
 MotionPath ImuPrior::path(Time begin, Time end) const {
   MotionPath path(begin);
-  State state = state_;
-  if (predict(begin, end, state, &path)) return path;
+  if (predict(begin, end, &path)) return path;
   // Samples are missing: constant velocity of the odometry.
   MotionPath constant(begin);
   constant.append(end, SE3::exp(fixes_.twist() * seconds_between(begin, end)));
   return constant;
 }
 
-// Scalar Kalman filter on the velocity: an unmodelled acceleration of 0.1 m/s^2 (tilt, accelerometer bias)
-// between scans, measured by the displacement that the LiDAR saw beyond the predicted one.
-void ImuPrior::correct_velocity(const OdometryFix& fix, const State& predicted, const State& measured,
-                                double dt_s) {
-  constexpr double kUnmodelledAccel = 0.1;
-  velocity_variance_ += kUnmodelledAccel * kUnmodelledAccel * dt_s * dt_s;
-  const double sigma_mps = config_.lidar_position_sigma_m * std::sqrt(2.0) / dt_s;
-  const double gain = velocity_variance_ / (velocity_variance_ + sigma_mps * sigma_mps);
-  const Mat3 R_odom_base = fix.T_odom_base.matrix3();
-  const Mat3 observed_odom = R_odom_base * fix.observed_translation * R_odom_base.transpose();
-  const Vec3 innovation = (measured.T_odom_imu.translation - predicted.T_odom_imu.translation) / dt_s;
-  state_.v_odom = predicted.v_odom + gain * (observed_odom * innovation);
-  if (fix.observed_translation.trace() > 2.5) velocity_variance_ *= 1.0 - gain;
+Mat6 ImuPrior::covariance(Time end) const {
+  const auto& last = fixes_.last();
+  const std::optional<State> state = last ? predict(last->stamp, end, nullptr) : std::nullopt;
+  if (!state) return fixes_.covariance(end);
+  return moved_covariance(state->P.topLeftCorner<6, 6>(), sheet_.T_base_imu.inverse());
+}
+
+// After a gap, or a state gone wrong: the velocity of the fixes, the biases as at the start.
+void ImuPrior::restart(const OdometryFix& fix, double dt_s) {
+  const Mat3 tilts = state_.P.topLeftCorner<3, 3>();
+  const double speed_sigma_mps = config_.unknown_accel_mps2 * std::max(dt_s, 0.1);
+  state_.v_odom = fix.T_odom_base.rotation * fixes_.twist().tail<3>();
+  state_.bias = start_bias_;
+  state_.P.setZero();
+  state_.P.topLeftCorner<6, 6>() = moved_covariance(fix.covariance, sheet_.T_base_imu);
+  state_.P.topLeftCorner<3, 3>() += tilts;
+  state_.P.diagonal().segment<3>(6).setConstant(square(speed_sigma_mps));
+  state_.P.diagonal().segment<3>(9).setConstant(square(gyro_bias_sigma_radps_));
+  state_.P.diagonal().tail<3>().setConstant(square(config_.accel_bias_sigma_mps2));
 }
 
 void ImuPrior::correct(const OdometryFix& fix) {
-  State measured;
-  measured.T_odom_imu = fix.T_odom_base * imu_calibration_.T_base_imu;
   const auto last = fixes_.last();
   fixes_.add(fix);
+  const SE3 T_odom_imu = fix.T_odom_base * sheet_.T_base_imu;
   if (last && fix.stamp > last->stamp) {
-    const double dt_s = seconds_between(last->stamp, fix.stamp);
-    State predicted = state_;
-    if (predict(last->stamp, fix.stamp, predicted, nullptr)) {
-      gyro_bias_.correct(so3_log(predicted.T_odom_imu.rotation.conjugate() * measured.T_odom_imu.rotation),
-                         fix.observed_rotation, dt_s);
-      correct_velocity(fix, predicted, measured, dt_s);
+    if (std::optional<State> predicted = predict(last->stamp, fix.stamp, nullptr)) {
+      const Vec6 shift = (predicted->T_odom_imu.inverse() * T_odom_imu).log();
+      const auto change =
+          condition_on_pose(predicted->P, shift, moved_covariance(fix.covariance, sheet_.T_base_imu));
+      state_ = *predicted;
+      state_.v_odom += change.segment<3>(6);
+      state_.bias.gyro_radps += change.segment<3>(9);
+      state_.bias.accel_mps2 += change.tail<3>();
     } else {
-      state_.v_odom = (measured.T_odom_imu.translation - state_.T_odom_imu.translation) / dt_s;
-      velocity_variance_ = 1.0;
+      state_.T_odom_imu = T_odom_imu;
+      restart(fix, seconds_between(last->stamp, fix.stamp));
     }
-    if (!(state_.v_odom.norm() < config_.max_speed_mps)) state_.v_odom.setZero();
   }
-  state_.T_odom_imu = measured.T_odom_imu;
+  state_.T_odom_imu = T_odom_imu;
+  if (last && !(state_.v_odom.norm() < config_.max_speed_mps)) restart(fix, 1);
   imu_.forget_before(fix.stamp);
 }
 

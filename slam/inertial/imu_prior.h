@@ -1,8 +1,8 @@
-// The prior `imu`: preintegrated IMU with the velocity that the LiDAR odometry shows.
+// The prior `imu`: an error-state Kalman filter of the IMU's pose, velocity and biases (Sola 2017, arXiv 1711.02508)
+// that preintegration carries from scan to scan and the registered scans correct.
 #pragma once
 
 #include "slam/inertial/fix_history.h"
-#include "slam/inertial/gyro_bias.h"
 #include "slam/inertial/imu_track.h"
 #include "slam/inertial/motion_prior.h"
 #include "slam/inertial/preintegration.h"
@@ -16,26 +16,31 @@ class ImuPrior : public MotionPrior {
   void start(const InitialState& state) override;
   void add(const ImuSample& sample) override { imu_.add(sample); }
   MotionPath path(Time begin, Time end) const override;
+  Mat6 covariance(Time end) const override;
   void correct(const OdometryFix& fix) override;
+  const ImuBias& bias() const { return state_.bias; }
 
  private:
-  /// Pose and velocity of the IMU's origin.
+  using Mat15 = Eigen::Matrix<double, 15, 15>;
+  /// Of the IMU's origin. Errors: [rotation; position; velocity; gyro bias; accel bias], rotation and position as right
+  /// perturbations of T_odom_imu, velocity in odom.
   struct State {
     SE3 T_odom_imu;
     Vec3 v_odom = Vec3::Zero();
+    ImuBias bias;
+    Mat15 P = Mat15::Identity();
   };
-  /// Appends the motion to `path` if given. False if samples are missing.
-  bool predict(Time begin, Time end, State& state, MotionPath* path) const;
-  void correct_velocity(const OdometryFix& fix, const State& predicted, const State& measured, double dt_s);
+  /// From `begin`, the stamp of the state. Appends the motion to `path` if given. Nothing if samples are missing.
+  std::optional<State> predict(Time begin, Time end, MotionPath* path) const;
+  void restart(const OdometryFix& fix, double dt_s);
 
   InertialConfig config_;
-  ImuCalibration imu_calibration_;
+  ImuCalibration sheet_;  // its noise as believed
   ImuTrack imu_;
-  GyroBias gyro_bias_;
-  Vec3 accel_bias_mps2_ = Vec3::Zero();  // as at the start
   FixHistory fixes_;
   State state_;  // at the last fix
-  double velocity_variance_ = 1.0;
+  ImuBias start_bias_;
+  double gyro_bias_sigma_radps_ = 0.01;
 };
 
 }  // namespace vsslam

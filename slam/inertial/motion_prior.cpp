@@ -11,9 +11,14 @@ void InertialConfig::fields(Fields& f) {
   f("spike_gyro_radps", spike_gyro_radps, positive());
   f("spike_accel_mps2", spike_accel_mps2, positive());
   f("max_gap_s", max_gap_s, positive());
-  f("lidar_rotation_sigma_rad", lidar_rotation_sigma_rad, positive());
-  f("lidar_position_sigma_m", lidar_position_sigma_m, positive());
   f("max_speed_mps", max_speed_mps, positive());
+  f("max_turn_radps", max_turn_radps, positive());
+  f("unknown_accel_mps2", unknown_accel_mps2, positive());
+  f("unknown_turn_radps2", unknown_turn_radps2, positive());
+  f("imu_noise_factor", imu_noise_factor, positive());
+  f("accel_bias_sigma_mps2", accel_bias_sigma_mps2, positive());
+  f("wheel_slip", wheel_slip, positive());
+  f("wheel_turn_slip", wheel_turn_slip, positive());
 }
 
 std::unique_ptr<MotionPrior> make_motion_prior(PriorKind kind, const InertialConfig& config,

@@ -34,6 +34,7 @@ class MotionPath {
 struct OdometryFix {
   Time stamp;
   SE3 T_odom_base;
+  Mat6 covariance = 1e-6 * Mat6::Identity();     ///< of T_odom_base, right perturbation: LiDAR and prior together
   Mat3 observed_rotation = Mat3::Identity();     ///< projector on the observed directions, base frame
   Mat3 observed_translation = Mat3::Identity();  ///< likewise
 };
@@ -57,9 +58,16 @@ struct InertialConfig {
   double spike_gyro_radps = 0.5;  ///< a single sample this far from its neighbours is replaced by the median
   double spike_accel_mps2 = 20.0;
   double max_gap_s = 0.05;                 ///< samples further apart are a dropout
-  double lidar_rotation_sigma_rad = 5e-4;  ///< of a registered scan, for the online estimate of the bias
-  double lidar_position_sigma_m = 3e-3;    ///< likewise for the velocity
   double max_speed_mps = 30.0;             ///< beyond this a velocity estimate is discarded
+  double max_turn_radps = 3.0;             ///< as fast as anything on the ground turns
+  /// How a robot's velocity changes that nothing measures: a car brakes by 3 m/s^2, the Scout by 1.
+  double unknown_accel_mps2 = 2.0, unknown_turn_radps2 = 2.0;
+  /// On the densities of the sheet, which hold for an IMU on a table: a robot shakes it (10 to 20 are usual for cameras
+  /// with IMUs in the hand).
+  double imu_noise_factor = 5.0;
+  double accel_bias_sigma_mps2 = 0.05;  ///< when the IMU is turned on (MTi-300: 0.02-0.05)
+  /// Wheels slip and skid: error of the way, and of the turn, as shares of them.
+  double wheel_slip = 0.03, wheel_turn_slip = 0.2;
   void fields(Fields& f);
 };
 
@@ -81,6 +89,8 @@ class MotionPrior {
   virtual void add(const CameraFrame&) {}
   /// Motion from `begin`, the stamp of the last fix, to `end`. Never throws, always finite.
   virtual MotionPath path(Time begin, Time end) const = 0;
+  /// Of T_odom_base at `end`: the last fix moved along path(last fix, end). Right perturbation [rotation; translation].
+  virtual Mat6 covariance(Time end) const = 0;
   /// Called once per scan, in order.
   virtual void correct(const OdometryFix& fix) = 0;
   /// The undistorted scan of the last fix.

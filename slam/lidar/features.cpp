@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "slam/lidar/voxel_hash.h"
@@ -12,7 +11,7 @@ namespace vsslam {
 void FeatureConfig::fields(Fields& f) {
   f("half_window", half_window, between(1, 50));
   f("short_half_window", short_half_window, between(1, 50));
-  f("planar_threshold_m", planar_threshold_m, positive());
+  f.automatic("planar_threshold_m", planar_threshold_m, positive());
   f("occlusion_jump_m", occlusion_jump_m, positive());
   f("occlusion_neighbours", occlusion_neighbours, between(0, 50));
   f("parallel_beam_deg", parallel_beam_deg, between(0, 90));
@@ -22,66 +21,41 @@ void FeatureConfig::fields(Fields& f) {
 
 namespace {
 
-// The scan sorted by ring, each ring in order of time. Prefix sums make means and counts over a window O(1).
-struct RingOrder {
-  std::vector<uint32_t> begin;  // of each ring, and the end of the last
-  std::vector<uint32_t> index;  // into scan.points
-  std::vector<float> range_m, time_s;
-  Cloud points_lidar;           // sorted
-  std::vector<uint32_t> steps;  // number of range steps before i
-  std::vector<uint8_t> shadowed;
-  float period_s = std::numeric_limits<float>::max();  // between two firings of a laser: the shortest seen
-
-  RingOrder(const LidarScan& scan, const Cloud& undistorted_lidar, int rings, double jump_m) {
-    sort_by_ring(scan, static_cast<size_t>(rings));
-    const size_t n = index.size();
-    range_m.resize(n);
-    time_s.resize(n);
-    shadowed.assign(n, 0);
-    points_lidar.resize(n);
-    for (size_t i = 0; i < n; ++i) {
-      const LidarPoint& p = scan.points[index[i]];
-      range_m[i] = std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z);
-      time_s[i] = p.time_s;
-      points_lidar[i] = undistorted_lidar[index[i]];
-    }
-    count_steps(static_cast<float>(jump_m));
-  }
-
-  void sort_by_ring(const LidarScan& scan, size_t rings) {
-    begin.assign(rings + 1, 0);
-    for (const LidarPoint& p : scan.points)
-      if (p.ring < rings) ++begin[p.ring + 1u];
-    for (size_t r = 0; r < rings; ++r) begin[r + 1] += begin[r];
-    std::vector<uint32_t> next = begin;
-    index.resize(begin.back());
-    for (uint32_t i = 0; i < scan.points.size(); ++i)
-      if (scan.points[i].ring < rings) index[next[scan.points[i].ring]++] = i;
-  }
-
-  void count_steps(float jump_m) {
-    steps.assign(index.size() + 1, 0);
-    for (size_t i = 1; i < index.size(); ++i) {
-      steps[i] = steps[i - 1] + (std::abs(range_m[i] - range_m[i - 1]) > jump_m ? 1 : 0);
-      const float step_s = time_s[i] - time_s[i - 1];
-      if (step_s > 1e-6f) period_s = std::min(period_s, step_s);
-    }
-  }
-};
-
 // Beside a range step the farther surface is seen only up to the shadow of the nearer one.
 void mark_shadow_edges(RingOrder& order, size_t begin, size_t end, const FeatureConfig& config) {
   constexpr float kNear = 10.5f;  // firings that still count as beside each other
   const auto n = static_cast<size_t>(config.occlusion_neighbours);
   for (size_t i = begin; i + 1 < end; ++i) {
     if (order.steps[i + 1] == order.steps[i]) continue;
-    if (order.time_s[i + 1] - order.time_s[i] > kNear * order.period_s) continue;
+    if (order.firing[i + 1] - order.firing[i] > kNear) continue;
     const bool next_is_farther = order.range_m[i + 1] > order.range_m[i];
     const size_t first = next_is_farther ? i + 1 : std::max(begin + n, i + 1) - n;
     const size_t last = next_is_farther ? std::min(i + n, end - 1) : i;
     for (size_t j = first; j <= last; ++j) order.shadowed[j] = 1;
   }
 }
+
+// Half the windows of a point, in firings.
+struct Windows {
+  const RingOrder& order;
+  size_t half, short_half;
+  float least_chord_m;
+
+  Windows(const RingOrder& ring_order, double range_sigma_m, const FeatureConfig& config)
+      : order(ring_order),
+        half(static_cast<size_t>(config.half_window)),
+        short_half(static_cast<size_t>(config.short_half_window)),
+        least_chord_m(static_cast<float>(5 * range_sigma_m)) {}
+
+  // Its direction is known to about sqrt(2) / 5 rad, enough to tell a jamb from its wall.
+  std::pair<size_t, size_t> at(size_t i) const {
+    constexpr size_t kMost = 25;  // of 2000 a turn: 9 degrees
+    const float spacing_m = order.range_m[i] * order.step_rad;
+    if (2 * spacing_m * static_cast<float>(half) >= least_chord_m || spacing_m <= 0) return {half, short_half};
+    const auto needed = std::min(kMost, static_cast<size_t>(0.5f * least_chord_m / spacing_m) + 1);
+    return {std::max(half, needed), std::max(short_half, needed * short_half / half)};
+  }
+};
 
 struct StraightnessTest {
   const RingOrder& order;
@@ -95,8 +69,8 @@ struct StraightnessTest {
     if (i < begin + half || i + half >= end) return false;
     const size_t first = i - half, last = i + half;
     if (order.steps[last] != order.steps[first]) return false;
-    const float longest_s = (2.0f * static_cast<float>(half) + 3.5f) * order.period_s;
-    if (order.time_s[last] - order.time_s[first] > longest_s) return false;
+    const float longest = 2.0f * static_cast<float>(half) + 3.5f;  // firings
+    if (order.firing[last] - order.firing[first] > longest) return false;
     const Eigen::Vector3f p = order.points_lidar[i];
     const Eigen::Vector3f chord = order.points_lidar[last] - order.points_lidar[first];
     const float length2 = chord.squaredNorm();
@@ -138,21 +112,24 @@ struct Thinning {
   }
 };
 
-// Calls keep(feature) for each planar point; skips a point unseen if skip(i, begin, end) says so.
+// Calls keep(feature) for each planar point; skips a point unseen if skip(i, half, short_half, begin, end) says so.
 template <class Skip, class Keep>
-void for_each_planar(RingOrder& order, const FeatureConfig& config, const Skip& skip, const Keep& keep) {
+void for_each_planar(RingOrder& order, double range_sigma_m, const FeatureConfig& config, const Skip& skip,
+                     const Keep& keep) {
+  constexpr double kPlanarSigmas = 4.3;
   const StraightnessTest straight{
-      order, static_cast<float>(config.planar_threshold_m),
+      order, static_cast<float>(config.planar_threshold_m.value_or(kPlanarSigmas * range_sigma_m)),
       static_cast<float>(std::sin(config.parallel_beam_deg * std::numbers::pi / 180))};
-  const auto half = static_cast<size_t>(config.half_window);
-  const auto short_half = static_cast<size_t>(config.short_half_window);
+  const Windows windows(order, range_sigma_m, config);
   for (size_t ring = 0; ring + 1 < order.begin.size(); ++ring) {
     const size_t begin = order.begin[ring], end = order.begin[ring + 1];
     mark_shadow_edges(order, begin, end, config);
     Feature feature;
     feature.ring = static_cast<uint16_t>(ring);
     for (size_t i = begin; i < end; ++i) {
-      if (order.shadowed[i] || order.range_m[i] < config.min_range_m || skip(i, begin, end)) continue;
+      if (order.shadowed[i] || order.range_m[i] < config.min_range_m) continue;
+      const auto [half, short_half] = windows.at(i);
+      if (skip(i, half, short_half, begin, end)) continue;
       if (straight(i, half, begin, end, feature) || straight(i, short_half, begin, end, feature))
         keep(feature);
     }
@@ -161,20 +138,19 @@ void for_each_planar(RingOrder& order, const FeatureConfig& config, const Skip& 
 
 }  // namespace
 
-std::vector<Feature> select_planar_features(const LidarScan& scan, const Cloud& points_lidar, int rings,
-                                            const FeatureConfig& config) {
-  RingOrder order(scan, points_lidar, rings, config.occlusion_jump_m);
+std::vector<Feature> select_planar_features(const LidarScan& scan, const Cloud& points_lidar,
+                                            double range_sigma_m, const FeatureConfig& config) {
+  RingOrder order(scan, points_lidar, range_step_m(range_sigma_m, config));
   std::vector<Feature> features;
   features.reserve(order.index.size());
   for_each_planar(
-      order, config, [](size_t, size_t, size_t) { return false; },
+      order, range_sigma_m, config, [](size_t, size_t, size_t, size_t, size_t) { return false; },
       [&](const Feature& feature) { features.push_back(feature); });
   return features;
 }
 
-std::vector<Feature> select_thin_features(const LidarScan& scan, const Cloud& points_lidar, int rings,
-                                          const FeatureConfig& config, double voxel_m) {
-  RingOrder order(scan, points_lidar, rings, config.occlusion_jump_m);
+std::vector<Feature> select_thin_features(RingOrder& order, double range_sigma_m, const FeatureConfig& config,
+                                          double voxel_m) {
   Thinning thinning(order.index.size() / 8, voxel_m);
   std::vector<Feature> kept;
   // The test of straightness is the dear part. Whatever it says, a point is dropped if its voxel has a
@@ -184,17 +160,20 @@ std::vector<Feature> select_thin_features(const LidarScan& scan, const Cloud& po
     const Eigen::Vector3f chord = order.points_lidar[i + half] - order.points_lidar[i - half];
     return thinning.has(order.points_lidar[i], chord);
   };
-  const auto half = static_cast<size_t>(config.half_window);
-  const auto short_half = static_cast<size_t>(config.short_half_window);
   for_each_planar(
-      order, config,
-      [&](size_t i, size_t begin, size_t end) {
+      order, range_sigma_m, config,
+      [&](size_t i, size_t half, size_t short_half, size_t begin, size_t end) {
         return taken(i, half, begin, end) && taken(i, short_half, begin, end);
       },
       [&](const Feature& feature) {
         if (thinning.add(feature)) kept.push_back(feature);
       });
   return kept;
+}
+
+double range_step_m(double range_sigma_m, const FeatureConfig& config) {
+  constexpr double kNoiseSigmas = 6;  // of the difference of two ranges 4.2: no step on a smooth surface
+  return std::max(config.occlusion_jump_m, kNoiseSigmas * range_sigma_m);
 }
 
 std::vector<Feature> thin_features(const std::vector<Feature>& features, double voxel_m) {

@@ -1,8 +1,11 @@
 #include "slam/lidar/lidar_odometry.h"
 
+#include <algorithm>
+
 namespace vsslam {
 
 void LidarOdometryConfig::fields(Fields& f) {
+  f.automatic("range_sigma_m", range_sigma_m, between(1e-4, 1));
   f("features", features);
   f("voxel_m", voxel_m, positive());
   f("map_voxel_m", map_voxel_m, positive());
@@ -11,12 +14,66 @@ void LidarOdometryConfig::fields(Fields& f) {
   f("key_angle_rad", key_angle_rad, positive());
   f("map", map);
   f("registration", registration);
+  f("search", search);
   f("degeneracy", degeneracy);
 }
 
-Registration LidarOdometry::align(const std::vector<Feature>& thin_features,
-                                  const SE3& T_odom_lidar_prior) const {
-  return register_scan(thin_features, T_odom_lidar_prior, map_, config_.registration, config_.degeneracy);
+// The median over the first scans: a scan's own figure is good to a percent where it sees walls, but leaves and grass
+// look like noise, and the first scan may see little else.
+void LidarOdometry::listen(double scan_sigma_m) {
+  constexpr size_t kScans = 10;
+  constexpr double kLeast_m = 0.003;  // ranges are given in steps of 2-4 mm, and no scanner is better
+  if (heard_m_.size() == kScans || scan_sigma_m <= 0) return;
+  heard_m_.push_back(scan_sigma_m);
+  std::vector<double> sorted = heard_m_;
+  std::sort(sorted.begin(), sorted.end());
+  range_sigma_m_ = std::max(kLeast_m, sorted[sorted.size() / 2]);
+}
+
+namespace {
+
+double median_range_m(const std::vector<Feature>& features) {
+  if (features.empty()) return 1;
+  std::vector<float> ranges;
+  for (const Feature& feature : features) ranges.push_back(feature.point_lidar.norm());
+  const auto middle = ranges.begin() + static_cast<std::ptrdiff_t>(ranges.size() / 2);
+  std::nth_element(ranges.begin(), middle, ranges.end());
+  return std::max(1.0, static_cast<double>(*middle));
+}
+
+// Wide enough to find again a robot that went astray for some scans.
+PosePrior astray(PosePrior prior) {
+  constexpr double kPosition_m = 0.5, kYaw_rad = 0.1;
+  prior.covariance.diagonal().head<3>().array() += kYaw_rad * kYaw_rad;
+  prior.covariance.diagonal().tail<3>().array() += kPosition_m * kPosition_m;
+  return prior;
+}
+
+}  // namespace
+
+Registration LidarOdometry::align(const std::vector<Feature>& thin_features, const PosePrior& prior) {
+  constexpr double kLost = 0.2, kMemory = 0.9;  // of the features: a fifth that fitted lately does not now
+  const auto from = [&](const SE3& start, const PosePrior& around) {
+    return register_scan(thin_features, around, start, map_, range_sigma_m(), config_.registration,
+                         config_.degeneracy);
+  };
+  Registration best = from(prior.T_odom_lidar, prior);
+  const double range_m = median_range_m(thin_features);
+  const bool lost = best.used_prior_only || best.cost > usual_cost_ + kLost;
+  if (thin_features.size() >= static_cast<size_t>(config_.registration.min_correspondences) &&
+      (lost || needs_search(prior, range_m, config_.search))) {
+    const PosePrior around = lost ? astray(prior) : prior;
+    const double standing_cost = best.cost;
+    for (const SE3& start : likely_poses(thin_features, around, range_m, map_, range_sigma_m(), config_.search)) {
+      const Registration other = from(start, around);
+      if (!other.used_prior_only && other.cost < best.cost &&
+          other.cost < standing_cost - config_.search.clearly_better)
+        best = other;
+    }
+  }
+  if (!best.used_prior_only)
+    usual_cost_ = usual_cost_ == 1 ? best.cost : kMemory * usual_cost_ + (1 - kMemory) * best.cost;
+  return best;
 }
 
 bool LidarOdometry::wants_key(const SE3& T_odom_base) const {
@@ -34,13 +91,21 @@ void LidarOdometry::insert_key(const std::vector<Feature>& features, const SE3& 
   const Eigen::Vector3f t = T_odom_lidar.translation.cast<float>();
   constexpr uint32_t kRings = 37;  // lines of different key scans rarely share a bit
   std::vector<MapPoint> points_odom;
-  for (const Feature& feature : thin_features(features, config_.map_voxel_m))
+  points_odom.reserve(features.size());
+  for (const Feature& feature : features)
     points_odom.push_back(
         {R * feature.point_lidar + t, R * feature.chord_lidar, kRings * keys_made_ + feature.ring});
   ++keys_made_;
   keys_odom_.push_back(std::move(points_odom));
   if (keys_odom_.size() > static_cast<size_t>(config_.local_map_keys)) keys_odom_.pop_front();
-  map_.rebuild(keys_odom_);
+  map_.rebuild(keys_odom_, range_sigma_m());
+}
+
+void LidarOdometry::replace_first_key(const std::vector<Feature>& features, const SE3& T_odom_base,
+                                      const SE3& T_base_lidar) {
+  keys_odom_.clear();
+  keys_made_ = 0;
+  insert_key(features, T_odom_base, T_base_lidar);
 }
 
 }  // namespace vsslam

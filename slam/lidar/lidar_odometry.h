@@ -10,12 +10,16 @@
 #include "core/config.h"
 #include "slam/lidar/features.h"
 #include "slam/lidar/plane_map.h"
+#include "slam/lidar/pose_search.h"
 #include "slam/lidar/registration.h"
 
 namespace vsslam {
 
 /// Defaults are for indoors; outdoors voxel_m 0.4.
 struct LidarOdometryConfig {
+  /// Noise of ranges. Automatic: as the first scans show it, else as the sheet says. Every threshold that is `automatic`
+  /// follows from it.
+  std::optional<double> range_sigma_m;
   FeatureConfig features;
   double voxel_m = 0.2;         ///< thinning of the features that are registered and kept with key scans
   double map_voxel_m = 0.1;     ///< thinning of the features that enter the local map
@@ -24,24 +28,39 @@ struct LidarOdometryConfig {
   double key_angle_rad = 0.2;   ///< ... or this much rotation
   PlaneMapConfig map;
   RegistrationConfig registration;
+  PoseSearchConfig search;
   DegeneracyConfig degeneracy;
   void fields(Fields& f);
 };
 
 class LidarOdometry {
  public:
-  explicit LidarOdometry(const LidarOdometryConfig& config) : config_(config), map_(config.map) {}
+  LidarOdometry(const LidarOdometryConfig& config, double sheet_range_sigma_m)
+      : config_(config), map_(config.map), range_sigma_m_(sheet_range_sigma_m) {}
 
-  Registration align(const std::vector<Feature>& thin_features, const SE3& T_odom_lidar_prior) const;
+  /// How the ranges of the sensor scatter: what the last scans show, or what was set.
+  double range_sigma_m() const { return config_.range_sigma_m.value_or(range_sigma_m_); }
+  /// Learns from a scan how noisy the sensor is.
+  void listen(double scan_sigma_m);
+
+  /// Near the prior; where the prior may miss, or the scan fits much worse there than scans did lately, farther around
+  /// it too.
+  Registration align(const std::vector<Feature>& thin_features, const PosePrior& prior);
+  bool has_map() const { return keys_made_ > 0; }
   /// Far enough from the last key scan, or the first.
   bool wants_key(const SE3& T_odom_base) const;
   /// Adds a key scan to the local map; the oldest leaves.
   void insert_key(const std::vector<Feature>& features, const SE3& T_odom_base, const SE3& T_base_lidar);
+  /// Puts better features in the place of the only key scan.
+  void replace_first_key(const std::vector<Feature>& features, const SE3& T_odom_base, const SE3& T_base_lidar);
 
  private:
   LidarOdometryConfig config_;
   PlaneMap map_;
   std::deque<std::vector<MapPoint>> keys_odom_;  // in the map
+  double range_sigma_m_;
+  std::vector<double> heard_m_;  // noise of the first scans
+  double usual_cost_ = 1;        // of the scans so far, a running mean; 1: none yet
   std::optional<SE3> T_odom_lastkey_;
   uint32_t keys_made_ = 0;
 };

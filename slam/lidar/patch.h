@@ -10,12 +10,16 @@ struct Patch {
   Patch(const Vec3& mean, const Mat3& mean_square, double point_count);
 
   Vec3 normal;     ///< unit length, either sign
+  Mat3 axes;       ///< the principal axes in columns; the first is the normal
   Vec3 spread_m2;  ///< variances along the principal axes, ascending: across the plane first
   double count;
 
-  /// The standard deviation of the normal is sigma / sqrt(count * spread along the shorter side), with sigma the
-  /// thickness of the patch, but not believed below `range_sigma_m`. What a normal feigns of a direction that no
-  /// surface sees stays below a share of max_normal_sigma_rad^2 (see degeneracy.h).
+  /// Variance across the plane, not believed below that of the ranges.
+  double thickness_m2(double range_sigma_m) const;
+  /// Variances (rad^2) of the normal's tilt towards axes 1 and 2: thickness / (count * spread along the axis).
+  Eigen::Vector2d normal_variance(double range_sigma_m) const;
+  /// What a normal feigns of a direction that no surface sees stays below a share of max_normal_sigma_rad^2 (see
+  /// degeneracy.h).
   bool normal_is_known(double max_normal_sigma_rad, double range_sigma_m) const;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numbers>
 
 #include "slam/lidar/patch.h"
 
@@ -13,10 +14,9 @@ void PlaneMapConfig::fields(Fields& f) {
   f("levels", levels, between(1, 8));
   f("min_points", min_points, between(3, 1e6));
   f("min_lines", min_lines, between(1, 64));
-  f("max_thickness_m", max_thickness_m, positive());
+  f.automatic("max_thickness_m", max_thickness_m, positive());
   f("max_normal_sigma_rad", max_normal_sigma_rad, positive());
-  f("range_sigma_m", range_sigma_m, positive());
-  f("max_chord_tilt_m", max_chord_tilt_m, positive());
+  f.automatic("max_chord_tilt_m", max_chord_tilt_m, positive());
 }
 
 namespace {
@@ -77,23 +77,40 @@ struct CellSums {
 };
 
 // The chords, whose ends are as noisy as the points, must lie in the plane too.
-bool fit_plane(const Sums& sums, const Eigen::Vector3f& origin, const PlaneMapConfig& config, Plane& plane) {
+bool fit_plane(const Sums& sums, const Eigen::Vector3f& origin, double range_sigma_m,
+               const PlaneMapConfig& config, Plane& plane) {
+  constexpr double kThicknessSigmas = 2.15;
   if (sums.count < config.min_points || std::popcount(sums.lines) < config.min_lines) return false;
   const Vec3 mean = sums.offset / sums.count;
   const Patch patch(mean, sums.square.matrix() / sums.count, sums.count);
-  const double max_variance = config.max_thickness_m * config.max_thickness_m;
+  const double max_thickness_m = config.max_thickness_m.value_or(kThicknessSigmas * range_sigma_m);
+  const double max_variance = max_thickness_m * max_thickness_m;
   if (!(patch.spread_m2[0] <= max_variance) ||
-      !patch.normal_is_known(config.max_normal_sigma_rad, config.range_sigma_m))
+      !patch.normal_is_known(config.max_normal_sigma_rad, range_sigma_m))
     return false;
   const Vec3& normal = patch.normal;
   if (normal.dot(sums.chord_square.matrix() * normal) > 2.0 * max_variance * sums.count) return false;
-  plane = {normal.cast<float>(), static_cast<float>(normal.dot(origin.cast<double>() + mean))};
+  const Vec3 center_odom = origin.cast<double>() + mean;
+  const Eigen::Vector2d tilt = patch.normal_variance(range_sigma_m);
+  plane.normal_odom = normal.cast<float>();
+  plane.distance_m = static_cast<float>(normal.dot(center_odom));
+  plane.center_odom = center_odom.cast<float>();
+  plane.center_variance_m2 = static_cast<float>(patch.thickness_m2(range_sigma_m) / sums.count);
+  for (const int k : {0, 1}) {
+    plane.axis_odom[k] = patch.axes.col(k + 1).cast<float>();
+    plane.tilt_variance[k] = static_cast<float>(tilt[k]);
+  }
   return true;
 }
 
 }  // namespace
 
-void PlaneMap::rebuild(const std::deque<std::vector<MapPoint>>& keys_odom) {
+void PlaneMap::rebuild(const std::deque<std::vector<MapPoint>>& keys_odom, double range_sigma_m) {
+  constexpr double kTiltSigmas = 4;
+  range_sigma_m_ = range_sigma_m;
+  max_chord_tilt_m_ = static_cast<float>(
+      config_.max_chord_tilt_m.value_or(kTiltSigmas * std::numbers::sqrt2 * range_sigma_m));
+  planes_ = 0;
   std::vector<MapPoint> points;
   for (const auto& key : keys_odom) points.insert(points.end(), key.begin(), key.end());
   levels_.clear();
@@ -106,7 +123,7 @@ void PlaneMap::rebuild(const std::deque<std::vector<MapPoint>>& keys_odom) {
 }
 
 // Leaves in `points` those that the planes of this level do not explain.
-void PlaneMap::build_level(Level& level, std::vector<MapPoint>& points) const {
+void PlaneMap::build_level(Level& level, std::vector<MapPoint>& points) {
   level.index.reset(points.size() / 8);
   std::vector<CellSums> sums;
   std::vector<int> cell_of(points.size());
@@ -126,11 +143,15 @@ void PlaneMap::build_level(Level& level, std::vector<MapPoint>& points) const {
   for (size_t c = 0; c < sums.size(); ++c) {
     Cell& cell = level.cells[c];
     const CellSums& s = sums[c];
-    if (fit_plane(s.part[0] + s.part[1], s.origin, config_, cell.plane[0])) {
+    if (fit_plane(s.part[0] + s.part[1], s.origin, range_sigma_m_, config_, cell.plane[0])) {
+      cell.plane[0].number = planes_++;
       cell.plane[1] = cell.plane[0];
       cell.planar[0] = cell.planar[1] = true;
-    } else {
-      for (const int k : {0, 1}) cell.planar[k] = fit_plane(s.part[k], s.origin, config_, cell.plane[k]);
+      continue;
+    }
+    for (const int k : {0, 1}) {
+      cell.planar[k] = fit_plane(s.part[k], s.origin, range_sigma_m_, config_, cell.plane[k]);
+      if (cell.planar[k]) cell.plane[k].number = planes_++;
     }
   }
   size_t kept = 0;
@@ -149,17 +170,10 @@ const Plane* PlaneMap::find(const Eigen::Vector3f& point_odom, const Eigen::Vect
     const Cell& cell = level.cells[static_cast<size_t>(number)];
     const int k = cell.chord_class(chord_odom);
     if (!cell.planar[k]) continue;
-    const bool same_surface = std::abs(cell.plane[k].normal_odom.dot(chord_odom)) <= config_.max_chord_tilt_m;
+    const bool same_surface = std::abs(cell.plane[k].normal_odom.dot(chord_odom)) <= max_chord_tilt_m_;
     return same_surface ? &cell.plane[k] : nullptr;
   }
   return nullptr;
-}
-
-size_t PlaneMap::plane_count() const {
-  size_t count = 0;
-  for (const Level& level : levels_)
-    for (const Cell& cell : level.cells) count += static_cast<size_t>(cell.planar[0]) + cell.planar[1];
-  return count;
 }
 
 }  // namespace vsslam

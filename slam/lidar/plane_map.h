@@ -9,6 +9,7 @@
 #pragma once
 
 #include <deque>
+#include <optional>
 #include <vector>
 
 #include "core/config.h"
@@ -22,11 +23,14 @@ struct PlaneMapConfig {
   int levels = 4;       ///< each level halves the edge
   int min_points = 10;  ///< of a plane
   int min_lines = 3;    ///< a ring that runs over a corner makes a plane that is not there; three do not
-  double max_thickness_m = 0.015;  ///< RMS distance of the points from their plane
+  /// RMS distance of the points from their plane. Automatic: 2.15 times the noise of ranges, which leaves room for
+  /// poses and lasers that err by as much again.
+  std::optional<double> max_thickness_m;
   double max_normal_sigma_rad =
-      0.05;                        ///< uncertainty of the normal, from the spread and number of the points
-  double range_sigma_m = 0.007;    ///< points are never believed better than this
-  double max_chord_tilt_m = 0.04;  ///< a point whose chord leaves the plane by more lies on another surface
+      0.05;  ///< uncertainty of the normal, from the spread and number of the points
+  /// A point whose chord leaves the plane by more lies on another surface. Automatic: 4 times the noise of the
+  /// difference of two ranges.
+  std::optional<double> max_chord_tilt_m;
   void fields(Fields& f);
 };
 
@@ -37,22 +41,35 @@ struct MapPoint {
   uint32_t line = 0;
 };
 
-/// n . x = d in the odom frame.
+/// n . x = d in the odom frame, and how well that is known.
 struct Plane {
   Eigen::Vector3f normal_odom = Eigen::Vector3f::Zero();
   float distance_m = 0;
+  Eigen::Vector3f center_odom = Eigen::Vector3f::Zero();
+  Eigen::Vector3f axis_odom[2] = {Eigen::Vector3f::Zero(), Eigen::Vector3f::Zero()};  ///< in the plane
+  float center_variance_m2 = 0;        ///< across the plane, at the center
+  float tilt_variance[2] = {0, 0};     ///< rad^2, of the normal towards each axis
+  int number = 0;                      ///< 0, 1, 2, ... in a map
+
+  /// Of the plane's distance from a point on it.
+  float variance_m2(const Eigen::Vector3f& point_odom) const {
+    const Eigen::Vector3f from_center = point_odom - center_odom;
+    const float u = axis_odom[0].dot(from_center), v = axis_odom[1].dot(from_center);
+    return center_variance_m2 + tilt_variance[0] * u * u + tilt_variance[1] * v * v;
+  }
 };
 
 class PlaneMap {
  public:
   explicit PlaneMap(const PlaneMapConfig& config) : config_(config) {}
 
-  /// Replaces the content by the points of all key scans. Deterministic: sums run in their order.
-  void rebuild(const std::deque<std::vector<MapPoint>>& keys_odom);
+  /// Replaces the content by the points of all key scans, whose ranges are as noisy as that. Deterministic: sums run
+  /// in their order.
+  void rebuild(const std::deque<std::vector<MapPoint>>& keys_odom, double range_sigma_m);
   /// The plane of the coarsest cube around the point that has one for its chord; nullptr if none. Never a
   /// neighbour's: near an edge that is the wrong surface.
   const Plane* find(const Eigen::Vector3f& point_odom, const Eigen::Vector3f& chord_odom) const;
-  size_t plane_count() const;
+  size_t plane_count() const { return static_cast<size_t>(planes_); }
 
  private:
   struct Cell {
@@ -70,9 +87,12 @@ class PlaneMap {
     KeyIndex index;
     std::vector<Cell> cells;  // by number of the key
   };
-  void build_level(Level& level, std::vector<MapPoint>& points) const;
+  void build_level(Level& level, std::vector<MapPoint>& points);
 
   PlaneMapConfig config_;
+  double range_sigma_m_ = 0;
+  float max_chord_tilt_m_ = 0;
+  int planes_ = 0;
   std::vector<Level> levels_;
 };
 

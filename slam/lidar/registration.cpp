@@ -1,35 +1,40 @@
 #include "slam/lidar/registration.h"
 
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 namespace vsslam {
 
 void RegistrationConfig::fields(Fields& f) {
+  f.choice("weighting", weighting, {{"covariance", Weighting::covariance}, {"remapping", Weighting::remapping}});
   f("max_iterations", max_iterations, between(1, 1000));
   f("min_correspondences", min_correspondences, between(6, 1e6));
   f("max_distance_m", max_distance_m, positive());
-  f("final_distance_m", final_distance_m, positive());
-  f("robust_scale_m", robust_scale_m, positive());
+  f.automatic("final_distance_m", final_distance_m, positive());
+  f.automatic("robust_scale_m", robust_scale_m, positive());
+  f("plane_sigma_m", plane_sigma_m, non_negative());
   f("converged_rotation_deg", converged_rotation_deg, positive());
   f("converged_translation_m", converged_translation_m, positive());
 }
 
 namespace {
 
-// Normal equations of one iteration: A x = b weighted, H unweighted.
-struct Linearised {
-  Mat6 A = Mat6::Zero(), H = Mat6::Zero();
-  Vec6 b = Vec6::Zero();
-  int correspondences = 0;
+struct Match {
+  const Feature* feature;
+  const Plane* plane;
+  Eigen::Vector3f point_odom;
+  double residual_m;  // n . (T p) - d
 };
 
-// r_i = n . (T Exp(x) p) - d, dr/dx = [p x (R^T n); R^T n] (sensor-centred right perturbation).
-Linearised linearise(const std::vector<Feature>& features, const SE3& T_odom_lidar, const PlaneMap& map,
-                     double max_distance_m, double robust_scale_m) {
-  Linearised sums;
+// The features with a plane at most `max_distance_m` away.
+std::vector<Match> match(const std::vector<Feature>& features, const SE3& T_odom_lidar, const PlaneMap& map,
+                         double max_distance_m) {
+  std::vector<Match> matches;
+  matches.reserve(features.size());
   const Eigen::Matrix3f R = T_odom_lidar.matrix3().cast<float>();
-  const Mat3 R_lidar_odom = T_odom_lidar.matrix3().transpose();
   const Eigen::Vector3f t = T_odom_lidar.translation.cast<float>();
   for (const Feature& feature : features) {
     const Eigen::Vector3f point_odom = R * feature.point_lidar + t;
@@ -37,46 +42,154 @@ Linearised linearise(const std::vector<Feature>& features, const SE3& T_odom_lid
     const Plane* plane = map.find(point_odom, chord_odom);
     if (!plane) continue;
     const double r = plane->normal_odom.dot(point_odom) - plane->distance_m;
-    if (std::abs(r) > max_distance_m) continue;
-    const Vec6 row = point_to_plane_row(feature.point_lidar.cast<double>(),
-                                        R_lidar_odom * plane->normal_odom.cast<double>());
-    const double w = 1.0 / (1.0 + r * r / (robust_scale_m * robust_scale_m));
+    if (std::abs(r) <= max_distance_m) matches.push_back({&feature, plane, point_odom, r});
+  }
+  return matches;
+}
+
+// How many of the matches share each plane.
+std::vector<int> points_per_plane(const std::vector<Match>& matches, const PlaneMap& map) {
+  std::vector<int> counts(map.plane_count(), 0);
+  for (const Match& m : matches) ++counts[static_cast<size_t>(m.plane->number)];
+  return counts;
+}
+
+// Normal equations of one iteration: A x = b weighted, H unweighted.
+struct Linearised {
+  Mat6 A = Mat6::Zero(), H = Mat6::Zero();
+  Vec6 b = Vec6::Zero();
+};
+
+// r_i = n . (T Exp(x) p) - d, dr/dx = [p x (R^T n); R^T n] (sensor-centred right perturbation). The n points of a plane
+// share its error: their mean has the variance (noise^2 + n plane^2) / n, so each weighs 1 / (noise^2 + n plane^2).
+class Weights {
+ public:
+  Weights(const std::vector<Match>& matches, const PlaneMap& map, double range_sigma_m,
+          const RegistrationConfig& config, double robust_scale_m)
+      : counts_(points_per_plane(matches, map)),
+        noise_m2_(range_sigma_m * range_sigma_m),
+        plane_m2_(config.plane_sigma_m * config.plane_sigma_m),
+        inverse_scale_m2_(1 / (robust_scale_m * robust_scale_m)) {}
+
+  double of(const Match& m) const {
+    const double shared_m2 = plane_m2_ + static_cast<double>(m.plane->variance_m2(m.point_odom));
+    return robust(m) / (noise_m2_ + counts_[static_cast<size_t>(m.plane->number)] * shared_m2);
+  }
+  double robust(const Match& m) const { return 1 / (1 + m.residual_m * m.residual_m * inverse_scale_m2_); }
+
+ private:
+  std::vector<int> counts_;
+  double noise_m2_, plane_m2_, inverse_scale_m2_;
+};
+
+Linearised linearise(const std::vector<Match>& matches, const SE3& T_odom_lidar, const Weights& weights) {
+  Linearised sums;
+  const Mat3 R_lidar_odom = T_odom_lidar.matrix3().transpose();
+  for (const Match& m : matches) {
+    const Vec6 row = point_to_plane_row(m.feature->point_lidar.cast<double>(),
+                                        R_lidar_odom * m.plane->normal_odom.cast<double>());
+    const double w = weights.of(m);
     sums.H.selfadjointView<Eigen::Lower>().rankUpdate(row);
     sums.A.selfadjointView<Eigen::Lower>().rankUpdate(row, w);
-    sums.b -= w * r * row;
-    ++sums.correspondences;
+    sums.b -= w * m.residual_m * row;
   }
   sums.H.triangularView<Eigen::StrictlyUpper>() = sums.H.transpose();
   sums.A.triangularView<Eigen::StrictlyUpper>() = sums.A.transpose();
   return sums;
 }
 
+// The nearest matrix without negative eigenvalues.
+Mat6 without_negative(const Mat6& matrix) {
+  const Eigen::SelfAdjointEigenSolver<Mat6> solver(matrix);
+  return solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).asDiagonal() * solver.eigenvectors().transpose();
+}
+
+// A normal that errs by e has the row J + G e: on average J J' grows by G Cov(e) G', information that no surface
+// gives. Here it is taken away again.
+void remove_feigned(const std::vector<Match>& matches, const SE3& T_odom_lidar, const Weights& weights,
+                    Linearised& sums) {
+  const Mat3 R_lidar_odom = T_odom_lidar.matrix3().transpose();
+  Linearised feigned;
+  for (const Match& m : matches) {
+    const double w = weights.of(m);
+    for (const int k : {0, 1}) {
+      const Vec6 row = point_to_plane_row(m.feature->point_lidar.cast<double>(),
+                                          R_lidar_odom * m.plane->axis_odom[k].cast<double>());
+      const double variance = m.plane->tilt_variance[k];
+      feigned.H.selfadjointView<Eigen::Lower>().rankUpdate(row, variance);
+      feigned.A.selfadjointView<Eigen::Lower>().rankUpdate(row, variance * w);
+    }
+  }
+  feigned.H.triangularView<Eigen::StrictlyUpper>() = feigned.H.transpose();
+  feigned.A.triangularView<Eigen::StrictlyUpper>() = feigned.A.transpose();
+  sums.H = without_negative(sums.H - feigned.H);
+  sums.A = without_negative(sums.A - feigned.A);
+}
+
+double mean_cost(const std::vector<Match>& matches, const Weights& weights, size_t features) {
+  double fitting = 0;
+  for (const Match& m : matches) fitting += weights.robust(m);
+  return features == 0 ? 1 : 1 - fitting / static_cast<double>(features);
+}
+
+double rms_m(const std::vector<Match>& matches, double robust_scale_m) {
+  double sum_m2 = 0;
+  int count = 0;
+  for (const Match& m : matches) {
+    if (std::abs(m.residual_m) > 3 * robust_scale_m) continue;
+    sum_m2 += m.residual_m * m.residual_m;
+    ++count;
+  }
+  return count == 0 ? 0 : std::sqrt(sum_m2 / count);
+}
+
 }  // namespace
 
-Registration register_scan(const std::vector<Feature>& features, const SE3& T_odom_lidar_prior,
-                           const PlaneMap& map, const RegistrationConfig& config,
+Registration register_scan(const std::vector<Feature>& features, const PosePrior& prior, const SE3& start,
+                           const PlaneMap& map, double range_sigma_m, const RegistrationConfig& config,
                            const DegeneracyConfig& degeneracy) {
-  Registration result;
-  result.T_odom_lidar = T_odom_lidar_prior;
+  const double final_m = config.final_distance_m.value_or(std::max(0.1, 5 * range_sigma_m));
+  const double robust_scale_m = config.robust_scale_m.value_or(4.3 * range_sigma_m);
   const double converged_rotation_rad = config.converged_rotation_deg * std::numbers::pi / 180.0;
-  double gate_m = config.max_distance_m;
+  const bool weighed = config.weighting == RegistrationConfig::Weighting::covariance;
+  const Mat6 prior_information = prior.covariance.ldlt().solve(Mat6::Identity());
+  Registration result;
+  result.T_odom_lidar = start;
+  result.covariance = prior.covariance;
+  double gate_m = std::max(config.max_distance_m, final_m);
   while (result.iterations < config.max_iterations && !result.converged) {
-    const Linearised sums = linearise(features, result.T_odom_lidar, map, gate_m, config.robust_scale_m);
+    const std::vector<Match> matches = match(features, result.T_odom_lidar, map, gate_m);
+    const Weights weights(matches, map, range_sigma_m, config, robust_scale_m);
+    Linearised sums = linearise(matches, result.T_odom_lidar, weights);
     ++result.iterations;
-    result.correspondences = sums.correspondences;
-    result.information = analyse_information(sums.H);
-    result.degeneracy = detect_degeneracy(sums.H, sums.correspondences, degeneracy);
-    if (sums.correspondences < config.min_correspondences) {
+    result.correspondences = static_cast<int>(matches.size());
+    if (result.correspondences < config.min_correspondences) {
       result.used_prior_only = true;
-      result.T_odom_lidar = T_odom_lidar_prior;
+      result.cost = 1;
+      result.T_odom_lidar = prior.T_odom_lidar;
       return result;
     }
-    const Vec6 step = result.degeneracy.solve(sums.A, sums.b);
+    Vec6 step;
+    if (weighed) {
+      const Vec6 from_prior = (prior.T_odom_lidar.inverse() * result.T_odom_lidar).log();
+      step = (sums.A + prior_information).ldlt().solve(sums.b - prior_information * from_prior);
+    } else {
+      step = detect_degeneracy(sums.H, result.correspondences, degeneracy).solve(sums.A, sums.b);
+    }
     result.T_odom_lidar = result.T_odom_lidar * SE3::exp(step);
     const bool small = step.head<3>().norm() < converged_rotation_rad &&
                        step.tail<3>().norm() < config.converged_translation_m;
-    result.converged = small && gate_m <= config.final_distance_m;
-    if (small || step.tail<3>().norm() < 0.1 * config.final_distance_m) gate_m = config.final_distance_m;
+    result.converged = small && gate_m <= final_m;
+    if (result.converged || result.iterations == config.max_iterations) {
+      remove_feigned(matches, result.T_odom_lidar, weights, sums);
+      result.information = analyse_information(sums.H);
+      result.degeneracy = detect_degeneracy(sums.H, result.correspondences, degeneracy);
+      result.scan_information = sums.A;
+      result.covariance = (sums.A + prior_information).ldlt().solve(Mat6::Identity());
+      result.cost = mean_cost(matches, weights, features.size());
+      result.residual_m = rms_m(matches, robust_scale_m);
+    }
+    if (small || step.tail<3>().norm() < 0.1 * final_m) gate_m = final_m;
   }
   return result;
 }

@@ -1,6 +1,7 @@
 // Point-to-plane Gauss-Newton of a scan against the local map, about the sensor.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "core/config.h"
@@ -12,30 +13,50 @@
 namespace vsslam {
 
 struct RegistrationConfig {
+  /// covariance: scan and prior are weighed by their covariances in one problem, so that what the scan does not see the
+  /// prior gives by itself. remapping: the scan alone decides in the directions that it sees (DegeneracyConfig), the
+  /// prior alone in the others (Zhang et al. 2016), as published.
+  enum class Weighting { covariance, remapping };
+  Weighting weighting = Weighting::covariance;
   int max_iterations = 30;
-  int min_correspondences = 50;   ///< fewer: the prior alone gives the pose
-  double max_distance_m = 0.3;    ///< of a point from its plane, first iteration
-  double final_distance_m = 0.1;  ///< and once the steps are small
-  double robust_scale_m = 0.03;   ///< Cauchy: weight 1 / (1 + (r / scale)^2)
+  int min_correspondences = 50;  ///< fewer: the prior alone gives the pose
+  double max_distance_m = 0.3;   ///< of a point from its plane, first iteration; more if the prior may err by more
+  /// And once the steps are small. Automatic: 0.1 m, which planes and poses may err by, or 5 times the noise of ranges.
+  std::optional<double> final_distance_m;
+  /// Cauchy: weight 1 / (1 + (r / scale)^2). Automatic: 4.3 times the noise of ranges.
+  std::optional<double> robust_scale_m;
+  /// What the planes of a scan err by beside the noise of its points, each plane by as much for all its points: lasers
+  /// that are biased, surfaces that are not flat, poses that bent the map.
+  double plane_sigma_m = 0.003;
   double converged_rotation_deg = 0.005;
   double converged_translation_m = 1e-4;
   void fields(Fields& f);
 };
 
+/// Where the scan is believed to be before it is looked at.
+struct PosePrior {
+  SE3 T_odom_lidar;
+  Mat6 covariance = Mat6::Identity();  ///< of a right perturbation [rotation; translation]
+};
+
 struct Registration {
   SE3 T_odom_lidar;
-  Information information;  ///< unweighted, at the last iteration
+  Mat6 covariance = Mat6::Identity();         ///< of T_odom_lidar, right perturbation: scan and prior together
+  Mat6 scan_information = Mat6::Zero();       ///< what the scan alone says of it
+  Information information;  ///< unweighted, at the last iteration, without what the noise of normals feigns
   Degeneracy degeneracy;    ///< at the last iteration
   int correspondences = 0;
+  double cost = 0;          ///< mean over the features of the robust cost, in 0..1; a feature without plane costs 1
+  double residual_m = 0;    ///< RMS of the residuals within 3 robust scales
   int iterations = 0;
   bool converged = false;
   bool used_prior_only = false;
 };
 
-/// Minimises sum w_i (n_i . (T p_i) - d_i)^2 over T = T_odom_lidar, starting from the prior; directions that
-/// the scan does not see keep the prior.
-Registration register_scan(const std::vector<Feature>& features, const SE3& T_odom_lidar_prior,
-                           const PlaneMap& map, const RegistrationConfig& config,
+/// Minimises sum w_i (n_i . (T p_i) - d_i)^2 + xi' P^-1 xi over T = T_odom_lidar, xi = Log(T_prior^-1 T), starting from
+/// `start`. The w_i are those of points with the noise `range_sigma_m` on planes that err as a whole.
+Registration register_scan(const std::vector<Feature>& features, const PosePrior& prior, const SE3& start,
+                           const PlaneMap& map, double range_sigma_m, const RegistrationConfig& config,
                            const DegeneracyConfig& degeneracy);
 
 }  // namespace vsslam

@@ -1,5 +1,7 @@
 #include "slam/vision/vio_prior.h"
 
+#include "slam/inertial/pose_covariance.h"
+
 namespace vsslam {
 
 void VisionConfig::fields(Fields& f) {
@@ -79,6 +81,23 @@ MotionPath VioPrior::path(Time begin, Time end) const {
   if (begin < end)
     if (std::optional<MotionPath> visual = visual_path(begin, end)) return std::move(*visual);
   return fallback_.path(begin, end);
+}
+
+// While it tracks, visual odometry errs by a share of the way and of the turn (docs/benchmarks.md: 0.2 to 0.3 % over a
+// drive; from scan to scan it is the noise of its window).
+Mat6 VioPrior::covariance(Time end) const {
+  constexpr double kWayShare = 0.01, kTurnShare = 0.01, kStep_m = 2e-3, kStep_rad = 5e-4;
+  const std::optional<OdometryFix>& last = fallback_.fixes().last();
+  const std::optional<MotionPath> visual =
+      last && last->stamp < end ? visual_path(last->stamp, end) : std::nullopt;
+  if (!visual) return fallback_.covariance(end);
+  const SE3& motion = visual->end_pose();
+  const double step_m = kWayShare * motion.translation.norm() + kStep_m;
+  const double turn_rad = kTurnShare * motion.angle() + kStep_rad;
+  Mat6 covariance = moved_covariance(last->covariance, motion);
+  covariance.diagonal().head<3>().array() += turn_rad * turn_rad;
+  covariance.diagonal().tail<3>().array() += step_m * step_m;
+  return covariance;
 }
 
 void VioPrior::correct(const OdometryFix& fix) {

@@ -19,6 +19,7 @@ class VioPrior : public MotionPrior {
   void add(const WheelSample& sample) override { fallback_.add(sample); }
   void add(const CameraFrame& image) override;
   MotionPath path(Time begin, Time end) const override;
+  Mat6 covariance(Time end) const override;
   void correct(const OdometryFix& fix) override;
   void add_scan(Time stamp, const Cloud& points_lidar, const SE3& T_odom_base) override;
   std::optional<VisualReport> visual_report() const override;

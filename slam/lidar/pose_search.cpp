@@ -1,0 +1,98 @@
+#include "slam/lidar/pose_search.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vsslam {
+
+void PoseSearchConfig::fields(Fields& f) {
+  f("reach_m", reach_m, positive());
+  f("features", features, between(50, 1e6));
+  f("finalists", finalists, between(1, 1000));
+  f("clearly_better", clearly_better, between(0, 1));
+  f("max_m", max_m, positive());
+  f("max_rad", max_rad, positive());
+}
+
+namespace {
+
+constexpr double kSigmas = 3;
+
+double position_sigma_m(const PosePrior& prior) {
+  return std::sqrt(prior.covariance.bottomRightCorner<3, 3>().diagonal().maxCoeff());
+}
+double rotation_sigma_rad(const PosePrior& prior) {
+  return std::sqrt(prior.covariance.topLeftCorner<3, 3>().diagonal().maxCoeff());
+}
+
+std::vector<Feature> every_nth(const std::vector<Feature>& features, int wanted) {
+  const size_t stride = std::max<size_t>(1, features.size() / static_cast<size_t>(wanted));
+  std::vector<Feature> some;
+  for (size_t i = 0; i < features.size(); i += stride) some.push_back(features[i]);
+  return some;
+}
+
+// Share of the features that lie on a plane of the map, softly.
+double fit(const std::vector<Feature>& features, const SE3& T_odom_lidar, const PlaneMap& map, double scale_m) {
+  const Eigen::Matrix3f R = T_odom_lidar.matrix3().cast<float>();
+  const Eigen::Vector3f t = T_odom_lidar.translation.cast<float>();
+  const auto inverse2 = static_cast<float>(1 / (scale_m * scale_m));
+  double sum = 0;
+  for (const Feature& feature : features) {
+    const Eigen::Vector3f point_odom = R * feature.point_lidar + t;
+    const Plane* plane = map.find(point_odom, R * feature.chord_lidar);
+    if (!plane) continue;
+    const float r = plane->normal_odom.dot(point_odom) - plane->distance_m;
+    sum += 1 / (1 + r * r * inverse2);
+  }
+  return sum / static_cast<double>(std::max<size_t>(1, features.size()));
+}
+
+struct Candidate {
+  double fit = 0;
+  double x_m = 0, y_m = 0, yaw_rad = 0;
+};
+
+}  // namespace
+
+bool needs_search(const PosePrior& prior, double range_m, const PoseSearchConfig& config) {
+  return kSigmas * (position_sigma_m(prior) + range_m * rotation_sigma_rad(prior)) > config.reach_m;
+}
+
+std::vector<SE3> likely_poses(const std::vector<Feature>& features, const PosePrior& prior, double range_m,
+                              const PlaneMap& map, double range_sigma_m, const PoseSearchConfig& config) {
+  const std::vector<Feature> judges = every_nth(features, config.features);
+  const double reach_m = std::min(config.max_m, kSigmas * position_sigma_m(prior));
+  const double reach_rad = std::min(config.max_rad, kSigmas * rotation_sigma_rad(prior));
+  // Registration bridges the distance to the next pose of the grid.
+  const double step_m = config.reach_m, step_rad = config.reach_m / range_m;
+  const int steps = static_cast<int>(std::ceil(reach_m / step_m));
+  const int turns = static_cast<int>(std::ceil(reach_rad / step_rad));
+  const double scale_m = std::max(4.3 * range_sigma_m, 0.5 * step_m);
+  std::vector<Candidate> candidates;
+  for (int yaw = -turns; yaw <= turns; ++yaw)
+    for (int x = -steps; x <= steps; ++x)
+      for (int y = -steps; y <= steps; ++y) {
+        if (std::hypot(x, y) > steps + 0.5) continue;
+        Candidate c{0, x * step_m, y * step_m, yaw * step_rad};
+        c.fit = fit(judges, prior.T_odom_lidar * SE3::from_rpy({0, 0, c.yaw_rad}, {c.x_m, c.y_m, 0}), map, scale_m);
+        candidates.push_back(c);
+      }
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.fit > b.fit; });
+  std::vector<Candidate> chosen{{}};  // the prior itself
+  for (const Candidate& c : candidates) {
+    if (chosen.size() > static_cast<size_t>(config.finalists)) break;
+    const bool near = std::any_of(chosen.begin(), chosen.end(), [&](const Candidate& other) {
+      return std::hypot(c.x_m - other.x_m, c.y_m - other.y_m) < 1.5 * step_m &&
+             std::abs(c.yaw_rad - other.yaw_rad) < 1.5 * step_rad;
+    });
+    if (!near) chosen.push_back(c);
+  }
+  std::vector<SE3> poses;
+  for (const Candidate& c : chosen)
+    poses.push_back(prior.T_odom_lidar * SE3::from_rpy({0, 0, c.yaw_rad}, {c.x_m, c.y_m, 0}));
+  return poses;
+}
+
+}  // namespace vsslam
