@@ -24,6 +24,8 @@ struct LidarScan {
   Time stamp;  ///< time of the first firing of the revolution
   Time end;    ///< time of the last firing
   std::vector<LidarPoint> points;
+  bool rings_known = true;  ///< false: `ring` is a guess from elevation, or says nothing
+  bool times_known = true;  ///< false: every time_s is 0 or invented
 };
 
 /// Specific force and angular rate in the IMU frame.
