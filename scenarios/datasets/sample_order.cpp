@@ -38,6 +38,8 @@ void SampleOrder::fill() {
   constexpr Duration kLeap{10'000'000'000};
   while (!ended_ && (waiting_.empty() || *newest_ - std::get<Time>(waiting_.begin()->first) < window_)) {
     std::optional<RecordedSample> sample = recording_.next();
+    for (size_t sensor = 0; sensor < kSensors; ++sensor)
+      counts_[sensor].unreadable = recording_.unreadable(sensor);
     if (!sample) {
       ended_ = true;
       if (ahead_) ++counts_[ahead_->sample.index()].stray;
@@ -94,6 +96,7 @@ bool SampleOrder::accept(const RecordedSample& sample) {
   }
   watch(sensor, stamp);
   ++counts.used;
+  counts.moved += sample.moved;
   return true;
 }
 
