@@ -53,7 +53,8 @@ TEST(Clocks, ThatAllDifferFromTheRecordersAreOne) {
 }
 
 TEST(Clocks, OneOfItsOwnIsMovedToWhereTheOthersAre) {
-  for (const int64_t off_ms : {-1'600'000'000'000, -40'000, -3'000, 300, 3'000, 3'600'000}) {
+  for (const int64_t off_ms :
+       std::initializer_list<int64_t>{-1'600'000'000'000, -40'000, -3'000, 300, 3'000, 3'600'000}) {
     const auto own = [&](int64_t ms) { return ms + off_ms; };
     const ClockPlan plan = plan_clocks({stream("imu", 10, 2, kRight), stream("lidar", 100, 2, own),
                                         stream("camera", 50, 2, own), stream("truth", 20, 2, kRight)},
@@ -77,7 +78,7 @@ TEST(Clocks, TheOneThatIsNotTheRecordersIsMoved) {
 }
 
 TEST(Clocks, SetBackOrAheadAreSetRight) {
-  for (const int64_t by_ms : {-3'600'000, -400, 2'000, 86'400'000}) {
+  for (const int64_t by_ms : std::initializer_list<int64_t>{-3'600'000, -400, 2'000, 86'400'000}) {
     const auto set = [&](int64_t ms) { return ms < 4'950 ? ms : ms + by_ms; };
     const ClockPlan plan = plan_clocks({stream("imu", 10, 1, set), stream("lidar", 100, 3, set)}, "a.bag");
     EXPECT_EQ(shift_ms(plan, "imu", 494), 0);
