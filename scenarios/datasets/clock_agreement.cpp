@@ -16,6 +16,7 @@ namespace {
 
 constexpr int64_t kMs = 1'000'000, kSecond = 1'000 * kMs;
 constexpr int64_t kLongestDelay_ns = 10 * kSecond, kSame_ns = 500 * kMs, kFuture_ns = 100 * kMs;
+constexpr int64_t kLongestWindow_ns = 3600 * kSecond;
 
 std::string seconds(Duration d) {
   return fmt::format("{:.3f} s", d.seconds());
@@ -293,22 +294,23 @@ void check_that_they_meet(const std::vector<ReceivedStream>& streams, const std:
 // --- Late ones ---
 
 Duration window_for(const std::vector<ReceivedStream>& streams, ClockPlan& plan) {
-  std::vector<std::tuple<Time, Time, size_t>> order;  // recorded, end, stream
-  std::vector<int64_t> usual_ns(streams.size());
+  std::vector<std::tuple<Time, size_t, Time, size_t>> order;  // recorded, place, end, stream
+  std::vector<std::optional<int64_t>> usual_ns(streams.size());
   for (size_t s = 0; s < streams.size(); ++s) {
     if (streams[s].sensor == "truth" || streams[s].messages.empty()) continue;
     std::vector<int64_t> leads;
     for (const Receipt& m : streams[s].messages) {
-      order.emplace_back(m.recorded, m.end, s);
+      order.emplace_back(m.recorded, m.place, m.end, s);
       leads.push_back(m.lead().ns);
     }
-    usual_ns[s] = quantile(std::move(leads), 0.5);
+    if (receipts_tell(streams[s].messages)) usual_ns[s] = quantile(std::move(leads), 0.5);
   }
   std::sort(order.begin(), order.end());
   std::vector<int64_t> latest_ns(streams.size());
   std::optional<Time> newest;
-  for (const auto& [recorded, end, s] : order) {
-    if (std::abs((end - recorded).ns - usual_ns[s]) > kLongestDelay_ns) continue;  // a stray
+  for (const auto& [recorded, place, end, s] : order) {
+    const bool stray = usual_ns[s] && std::abs((end - recorded).ns - *usual_ns[s]) > kLongestDelay_ns;
+    if (stray) continue;
     newest = newest ? std::max(*newest, end) : end;
     latest_ns[s] = std::max(latest_ns[s], (*newest - end).ns);
   }
@@ -316,12 +318,10 @@ Duration window_for(const std::vector<ReceivedStream>& streams, ClockPlan& plan)
   for (size_t s = 0; s < streams.size(); ++s) {
     most_ns = std::max(most_ns, latest_ns[s]);
     if (latest_ns[s] > kSecond)
-      plan.notes.push_back(
-          fmt::format("{} ({}): arrives up to {} after others of its time{}", streams[s].sensor,
-                      streams[s].name, seconds({latest_ns[s]}),
-                      latest_ns[s] > kLongestDelay_ns ? ": more than is waited for" : ": waited for"));
+      plan.notes.push_back(fmt::format("{} ({}): arrives up to {} after others of its time: waited for",
+                                       streams[s].sensor, streams[s].name, seconds({latest_ns[s]})));
   }
-  return {std::clamp(most_ns + kSecond / 4, kSecond, kLongestDelay_ns)};
+  return {std::clamp(most_ns + kSecond / 4, kSecond, kLongestWindow_ns)};
 }
 
 }  // namespace

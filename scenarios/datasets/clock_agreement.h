@@ -24,7 +24,7 @@ struct ClockShift {
 
 struct ClockPlan {
   std::map<std::string, std::vector<ClockShift>> shifts;  ///< by sensor, rising; none: as recorded
-  Duration window{1'000'000'000};  ///< samples that are put in order within it are not late; 1 .. 10 s
+  Duration window{1'000'000'000};  ///< samples that are put in order within it are not late; 1 s .. 1 h
   std::vector<std::string> notes;
 
   Duration shift_of(const std::string& sensor, size_t message) const;

@@ -106,7 +106,7 @@ void FolderRecording::look_at_first_scan() {
   const auto first = std::find_if(entries_.begin(), entries_.end(),
                                   [](const Entry& entry) { return entry.sensor == kLidar; });
   try {
-    facts_.rings = rings_of_clouds({cloud(*first)});
+    facts_.rings = rings_of_clouds({cloud(*first)}, options_);
   } catch (const InputError&) {
     // Whoever reads the scan will come to it, and say where it is.
   }

@@ -40,11 +40,17 @@ CloudDecoder::Options still() {
   return {.rings = kMostRings, .undistorted = true, .parts = {}};
 }
 
-int rings_of(const std::vector<LidarScan>& scans) {
-  int rings = 0;
-  for (const LidarScan& scan : scans)
-    if (scan.rings_known)
-      for (const LidarPoint& p : scan.points) rings = std::max(rings, p.ring + 1);
+// The highest of which there are more than some odd points.
+int rings_of(const std::vector<LidarScan>& scans, bool known) {
+  std::vector<size_t> points(kMostRings);
+  size_t all = 0;
+  for (const LidarScan& scan : scans) {
+    if (scan.rings_known != known) continue;
+    for (const LidarPoint& p : scan.points) ++points[p.ring];
+    all += scan.points.size();
+  }
+  int rings = kMostRings;
+  while (rings > 0 && points[static_cast<size_t>(rings - 1)] <= all / 2000) --rings;
   return rings;
 }
 
@@ -84,9 +90,8 @@ FirstLook look_at_first(MessageReader& reader, const CloudDecoder::Options& clou
   try {
     const FirstMessages first = first_messages(reader);
     look.depth = first.depth;
-    const std::vector<LidarScan> scans = decoded(first.clouds, still());
-    look.rings = rings_of(scans);
-    look.parts = parts_of_turns(scans);
+    look.rings = rings_of_clouds(first.clouds, clouds);
+    look.parts = parts_of_turns(decoded(first.clouds, still()));
     CloudDecoder::Options options = clouds;
     options.rings = std::max(options.rings, look.rings);
     options.parts = look.parts;
@@ -97,8 +102,12 @@ FirstLook look_at_first(MessageReader& reader, const CloudDecoder::Options& clou
   return look;
 }
 
-int rings_of_clouds(const std::vector<PointCloudMessage>& clouds) {
-  return rings_of(decoded(clouds, still()));
+int rings_of_clouds(const std::vector<PointCloudMessage>& clouds, const CloudDecoder::Options& options) {
+  if (const int told = rings_of(decoded(clouds, still()), true); told > 0) return told;
+  CloudDecoder::Options guessing = options;
+  guessing.undistorted = true;
+  guessing.rings = std::min(guessing.rings, kMostRings);
+  return rings_of(decoded(clouds, guessing), false);
 }
 
 std::vector<ReceivedStream> received_streams(MessageReader& headers, const TopicChoice& topics,
@@ -108,10 +117,12 @@ std::vector<ReceivedStream> received_streams(MessageReader& headers, const Topic
     if (const auto topic = topics.find(sensor); topic != topics.end())
       streams.push_back({sensor, topic->second, {}});
   try {
-    while (const std::optional<Message> message = headers.next())
+    size_t place = 0;
+    for (; const std::optional<Message> message = headers.next(); ++place)
       for (ReceivedStream& stream : streams) {
         if (stream.name != message->topic) continue;
         Receipt receipt = receipt_of(*message);
+        receipt.place = place;
         if (stream.sensor == "lidar") receipt.end = receipt.end + scan_lasts;
         stream.messages.push_back(receipt);
       }

@@ -29,8 +29,8 @@ struct MessageSurvey {
 /// topic, and the camera's if it is used.
 FirstLook look_at_first(MessageReader& reader, const CloudDecoder::Options& clouds);
 
-/// That the points of these clouds tell of; 0: they tell nothing. Throws InputError.
-int rings_of_clouds(const std::vector<PointCloudMessage>& clouds);
+/// Rings that the points of these clouds tell of, by their numbers or else by their elevations. Throws InputError.
+int rings_of_clouds(const std::vector<PointCloudMessage>& clouds, const CloudDecoder::Options& options);
 
 /// When the messages of the chosen topics were recorded, with the ends of their acquisition; as far as the file can be read.
 /// `headers` delivers these topics' headers.

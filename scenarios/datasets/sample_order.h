@@ -29,11 +29,12 @@ struct SampleCounts {
 
 /// Samples in order of the end of their acquisition (ties: IMU, wheels, LiDAR, camera), as far as a window of time can
 /// put them in order: that of the recording, unless another is given. Stamps are counted from a whole second, that of the earliest sample in the first window. Holds no
-/// more than the window's samples.
+/// more than the window's samples, and no more of them than some memory: then the first goes its way early.
 class SampleOrder {
  public:
-  explicit SampleOrder(Recording& recording, std::optional<Duration> window = std::nullopt)
-      : recording_(recording), window_(window.value_or(recording.window())) {}
+  explicit SampleOrder(Recording& recording, std::optional<Duration> window = std::nullopt,
+                       size_t most_bytes = size_t{512} << 20)
+      : recording_(recording), window_(window.value_or(recording.window())), most_bytes_(most_bytes) {}
 
   std::optional<RecordedSample> next();
   /// Add it to a stamp to get the recorded one. Known after the first sample.
@@ -51,6 +52,7 @@ class SampleOrder {
   using Key = std::tuple<Time, size_t, int64_t>;  // end, sensor, number of arrival
 
   void fill();
+  bool enough() const;
   void take(RecordedSample sample);
   bool accept(const RecordedSample& sample);
   void watch(size_t sensor, Time stamp);
@@ -58,6 +60,7 @@ class SampleOrder {
 
   Recording& recording_;
   Duration window_;
+  size_t most_bytes_, bytes_ = 0;  // that may wait, that wait
   std::map<Key, RecordedSample> waiting_;
   std::optional<Time> newest_, released_;
   std::optional<RecordedSample>

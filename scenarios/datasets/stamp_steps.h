@@ -11,6 +11,7 @@ namespace vsslam {
 /// One message of a stream: when it was recorded, by the recorder's clock, and the end of its acquisition, by its own.
 struct Receipt {
   Time recorded, end;
+  size_t place = 0;                                 ///< in the order of reading, among all streams
   Duration lead() const { return end - recorded; }  ///< negative: it took so long to arrive
 };
 

@@ -204,8 +204,11 @@ TEST(CloudDecoder, APointOfARingThatThereIsNotIsLeftOut) {
 TEST(CloudDecoder, AnotherNumberOfLasersIsFoundByElevation) {
   CloudText text(kXyz);
   for (int column = 0; column < 100; ++column)
-    for (int laser = 0; laser < 24; ++laser)
-      text.point({std::cos(0.01 * laser * laser), 0.001 * column, std::sin(0.01 * laser * laser)});
+    for (int laser = 0; laser < 24; ++laser) {
+      const double elevation = 0.02 * laser + 0.001 * laser * laser, azimuth = 0.01 * column;
+      text.point({std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
+                  std::sin(elevation)});
+    }
   const LidarScan scan = CloudDecoder({.rings = 16}).decode(text.cloud, "here");
   int highest = 0;
   for (const LidarPoint& p : scan.points) highest = std::max<int>(highest, p.ring);
