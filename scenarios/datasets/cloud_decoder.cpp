@@ -159,6 +159,7 @@ LidarScan CloudDecoder::decode(const PointCloudMessage& cloud, std::string_view 
 
 void CloudDecoder::read_points(const PointCloudMessage& cloud, const Layout& layout, LidarScan& scan,
                                std::vector<double>& rings, std::vector<double>& times) const {
+  if (cloud.width == 0) return;  // in however many rows
   scan.points.reserve(size_t{cloud.width} * cloud.height);
   for (uint32_t row = 0; row < cloud.height; ++row) {
     const uint8_t* point = cloud.data.data() + size_t{row} * cloud.row_step;

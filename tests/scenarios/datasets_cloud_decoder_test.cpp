@@ -295,6 +295,12 @@ TEST(CloudDecoder, SpreadsRingsOfOtherLidarsEvenly) {
   for (int ring = 0; ring < 8; ++ring) EXPECT_EQ(scan.points[static_cast<size_t>(ring)].ring, ring);
 }
 
+TEST(CloudDecoder, ManyRowsOfNothingAreNothing) {
+  PointCloudMessage cloud = CloudText(xyz_and({{"ring", Field::u8}})).cloud;
+  cloud.height = 4'294'967'295u;
+  EXPECT_TRUE(decoded(cloud).points.empty());
+}
+
 TEST(CloudDecoder, MalformedCloudsAreErrorsWithAPlace) {
   const auto fails = [](const PointCloudMessage& cloud, const char* what) {
     EXPECT_THAT(
