@@ -135,8 +135,19 @@ ReplayedRecording::ReplayedRecording(const ReplayRequest& request,
   if (request.truth.empty() && !request.topics.contains("truth")) find_truth_beside();
   samples_ = std::make_unique<SampleOrder>(*recording_);
   choose_prior(sets_prior(request.overrides));
+  take_rings();
   setup_ = {config_.slam, sheet_.calibration, config_.map_voxel_m};
   tell_notes();
+}
+
+// A sheet with fewer rings than the LiDAR has would make its other points useless.
+void ReplayedRecording::take_rings() {
+  int& rings = sheet_.calibration.lidar.rings;
+  const int found = recording_->facts().rings;
+  if (found <= rings) return;
+  add_note(fmt::format("lidar: points of {} rings, but the rig's sheet has {} (lidar.rings): {} are taken",
+                       found, rings, found));
+  rings = found;
 }
 
 // Of a dataset whose format has no topic for it.
@@ -208,7 +219,9 @@ void ReplayedRecording::read_chunk(Chunk& chunk) {
   constexpr size_t kLidar = 2;
   if (ended_ && samples_->counts(kLidar).used == 0)
     throw InputError(fmt::format("{}: not one scan of the LiDAR could be used", path_.string()));
-  if (ended_) take_truth();
+  if (!ended_) return;
+  note_drops();
+  take_truth();
 }
 
 void ReplayedRecording::note_gaps() {
@@ -217,6 +230,22 @@ void ReplayedRecording::note_gaps() {
     if (counts.first_gap)
       add_note(fmt::format("{}: gaps in the recording, the first after {} s", kSensorNames[sensor],
                            format_seconds(*counts.first_gap)));
+  }
+}
+
+void ReplayedRecording::note_drops() {
+  for (size_t sensor = 0; sensor < kSensors; ++sensor) {
+    const SampleCounts& c = samples_->counts(sensor);
+    const auto tell = [&](int64_t dropped, const char* why) {
+      if (dropped > 0)
+        add_note(fmt::format("{}: {} of {} samples dropped: {}", kSensorNames[sensor], dropped,
+                             c.used + c.late + c.duplicates + c.stray + c.empty + c.unreadable, why));
+    };
+    tell(c.late, "they came too late");
+    tell(c.duplicates, "a stamp again, or an earlier one");
+    tell(c.stray, "a stamp far ahead of the others");
+    tell(c.empty, "scans without points");
+    tell(c.unreadable, "not to be read");
   }
 }
 
@@ -295,6 +324,8 @@ std::string ReplayedRecording::recording_json() const {
                                      {"dropped_duplicate", c.duplicates},
                                      {"dropped_stray", c.stray},
                                      {"dropped_empty", c.empty},
+                                     {"dropped_unreadable", c.unreadable},
+                                     {"moved_to_clock", c.moved},
                                      {"gaps", c.gaps},
                                      {"longest_gap_s", c.longest_gap_s}};
   }

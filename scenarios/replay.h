@@ -59,12 +59,14 @@ class ReplayedRecording final : public MeasurementSource {
   void find_truth_beside();
   bool is_kitti_folder() const;
   void read_truth(const std::filesystem::path& file);
+  void take_rings();
   void choose_prior(bool asked_for);
   void read_chunk(Chunk& chunk);
   void take_truth();
   void add_note(const std::string& text);
   void tell_notes();
   void note_gaps();
+  void note_drops();
   std::string recording_json() const;
 
   std::filesystem::path path_, out_;

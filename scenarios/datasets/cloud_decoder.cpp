@@ -126,22 +126,28 @@ void CloudDecoder::note(const std::string& text) {
 
 LidarScan CloudDecoder::decode(const PointCloudMessage& cloud, std::string_view place) {
   const Layout layout = layout_of(cloud, place);
-  LidarScan scan{cloud.header.stamp, cloud.header.stamp, {}};
-  std::vector<double> times;
-  read_points(cloud, layout, place, scan, times);
+  LidarScan scan{.stamp = cloud.header.stamp, .end = cloud.header.stamp, .points = {}};
+  std::vector<double> rings, times;
+  read_points(cloud, layout, scan, rings, times);
   if (layout.ring == nullptr) {
     note("no field of rings: derived from the points' elevation");
     rings_.fill(scan.points);
+    scan.rings_known = false;
+  } else {
+    settle_rings(scan, rings, times);
   }
   if (last_stamp_)
     if (const double since_s = seconds_between(*last_stamp_, scan.stamp); since_s > 0.02 && since_s < 0.5)
       period_s_ = since_s;
+  if (options_.parts) period_s_ = options_.parts->turn_s;
   last_stamp_ = scan.stamp;
   if (options_.undistorted) {
     note("points count as undistorted: all as fired at the stamp");
+    scan.times_known = false;
   } else if (layout.time == nullptr) {
     note("no field of times: derived from the points' azimuth");
     derive_times(scan);
+    scan.times_known = false;
   } else {
     set_times(scan, times, layout.time->datatype == Field::f32, place);
   }
@@ -151,8 +157,9 @@ LidarScan CloudDecoder::decode(const PointCloudMessage& cloud, std::string_view 
   return scan;
 }
 
-void CloudDecoder::read_points(const PointCloudMessage& cloud, const Layout& layout, std::string_view place,
-                               LidarScan& scan, std::vector<double>& times) {
+void CloudDecoder::read_points(const PointCloudMessage& cloud, const Layout& layout, LidarScan& scan,
+                               std::vector<double>& rings, std::vector<double>& times) const {
+  if (cloud.width == 0) return;  // in however many rows
   scan.points.reserve(size_t{cloud.width} * cloud.height);
   for (uint32_t row = 0; row < cloud.height; ++row) {
     const uint8_t* point = cloud.data.data() + size_t{row} * cloud.row_step;
@@ -164,28 +171,46 @@ void CloudDecoder::read_points(const PointCloudMessage& cloud, const Layout& lay
       if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) continue;
       if (p.x == 0 && p.y == 0 && p.z == 0) continue;
       if (layout.intensity != nullptr) p.intensity = static_cast<float>(number(layout.intensity));
-      if (layout.ring != nullptr) {
-        const double ring = number(layout.ring);
-        if (!(ring >= 0 && ring < options_.rings))
-          throw InputError(
-              fmt::format("{}: point {} is of ring {}, but the rig's sheet has {} rings (lidar.rings)", place,
-                          scan.points.size(), ring, options_.rings));
-        p.ring = static_cast<uint16_t>(ring);
-      }
       if (layout.time != nullptr) {
         const double time = number(layout.time);
         if (!std::isfinite(time)) continue;
         times.push_back(time);
       }
+      if (layout.ring != nullptr) rings.push_back(number(layout.ring));
       scan.points.push_back(p);
     }
   }
 }
 
-// A scan lasts between 10 ms and 1.5 s.
+// A few points of rings that there are not are left out.
+void CloudDecoder::settle_rings(LidarScan& scan, const std::vector<double>& rings,
+                                std::vector<double>& times) {
+  if (const auto fault = fault_of_rings(scan.points, rings, options_.rings)) {
+    note(fmt::format("the field of rings says nothing: {}: derived from the points' elevation", *fault));
+    rings_.fill(scan.points);
+    scan.rings_known = false;
+    return;
+  }
+  size_t kept = 0;
+  for (size_t i = 0; i < scan.points.size(); ++i) {
+    if (!(rings[i] >= 0 && rings[i] < options_.rings)) continue;
+    scan.points[kept] = scan.points[i];
+    scan.points[kept].ring = static_cast<uint16_t>(rings[i]);
+    if (!times.empty()) times[kept] = times[i];
+    ++kept;
+  }
+  if (kept == scan.points.size()) return;
+  note(fmt::format("some points are of rings that there are not (of {}): left out", options_.rings));
+  scan.points.resize(kept);
+  if (!times.empty()) times.resize(kept);
+}
+
+// A scan lasts between 10 ms and 1.5 s, a part of one about from one to the next.
 double CloudDecoder::unit_s(double span) const {
+  const double least_s = options_.parts ? options_.parts->every_s / 30 : 0.01,
+               most_s = options_.parts ? options_.parts->every_s * 3 : 1.5;
   for (const double unit : {1.0, 1e-3, 1e-6, 1e-9})
-    if (span * unit >= 0.01 && span * unit <= 1.5) return unit;
+    if (span * unit >= least_s && span * unit <= most_s) return unit;
   return 0;
 }
 
@@ -195,8 +220,9 @@ void CloudDecoder::set_times(LidarScan& scan, std::vector<double>& times, bool s
   const auto [low, high] = std::minmax_element(times.begin(), times.end());
   const double first = *low, span = *high - *low;
   if (span == 0 && !unit_s_) {
-    note("the field of times says nothing: derived from the points' azimuth");
-    return derive_times(scan);
+    note("the points' times are all the same: scans count as taken at their stamps, undistorted");
+    scan.times_known = false;
+    return;
   }
   if (!unit_s_) {
     const double unit = unit_s(span);
@@ -207,16 +233,8 @@ void CloudDecoder::set_times(LidarScan& scan, std::vector<double>& times, bool s
   }
   if (!(span * *unit_s_ <= kLongestScan_s))
     throw InputError(fmt::format("{}: the points' times span {} s", place, span * *unit_s_));
-  // Counted from the stamp, or from 1970, or from anywhere: then the stamp is the first point's.
-  const double stamp_s = scan.stamp.seconds(), first_s = first * *unit_s_;
-  double zero = 0;
-  if (std::abs(first_s) > 10 && std::abs(first_s - stamp_s) <= 10) {
-    zero = stamp_s / *unit_s_;
-  } else if (std::abs(first_s) > 10) {
-    note(
-        "the points' times are on another clock than the stamps: the first point's is taken for the stamp's");
-    zero = first;
-  }
+  const double zero_s = zero_of_times(scan.stamp, first * *unit_s_, *high * *unit_s_);
+  const double zero = zero_s == first * *unit_s_ ? first : zero_s / *unit_s_;
   double shift_s = 0;
   if (const double offset_s = (first - zero) * *unit_s_; offset_s < 0) {
     if (offset_s < -1e-3) note("stamps are not at the first point: moved there");
@@ -225,6 +243,27 @@ void CloudDecoder::set_times(LidarScan& scan, std::vector<double>& times, bool s
   }
   for (size_t i = 0; i < times.size(); ++i)
     scan.points[i].time_s = static_cast<float>((times[i] - zero) * *unit_s_ + shift_s);
+}
+
+// What the stamp is by the points' times: 0 if they are counted from it, its own value if from where it is counted; on a
+// clock of their own the first point's. Times that go on as the stamps do are not counted from them.
+double CloudDecoder::zero_of_times(Time stamp, double first_s, double last_s) {
+  constexpr double kOff_s = 10, kLongest_s = 1.5;
+  const double stamp_s = stamp.seconds();
+  if (last_header_ && last_first_s_) {
+    const double since_s = seconds_between(*last_header_, stamp), went_s = first_s - *last_first_s_;
+    if (since_s > 0 && since_s < kLongest_s) running_ = std::abs(went_s - since_s) < std::abs(went_s);
+  }
+  last_header_ = stamp;
+  last_first_s_ = first_s;
+  const double from_stamp_s = std::min(std::abs(first_s), std::abs(last_s)),
+               from_zero_s = std::min(std::abs(first_s - stamp_s), std::abs(last_s - stamp_s));
+  const bool relative = running_ ? !*running_ && from_stamp_s <= kOff_s
+                                 : from_stamp_s <= from_zero_s && from_stamp_s <= kLongest_s;
+  if (relative) return 0;
+  if (from_zero_s <= kOff_s) return stamp_s;
+  note("the points' times are on another clock than the stamps: the first point's is taken for the stamp's");
+  return first_s;
 }
 
 void CloudDecoder::derive_times(LidarScan& scan) {

@@ -9,19 +9,23 @@
 #include "core/samples.h"
 #include "scenarios/datasets/messages.h"
 #include "scenarios/datasets/ring_finder.h"
+#include "scenarios/datasets/turn_assembler.h"
 
 namespace vsslam {
 
-/// Clouds of one topic, in order. Needed: x, y, z. Used if there: an intensity; the ring, else derived from elevation;
-/// the time of each point, else derived from azimuth (the LiDAR turns clockwise, seen from above).
+/// Clouds of one topic, in order. Needed: x, y, z. Used if there: an intensity; the ring, if it makes sense, else derived
+/// from elevation (then rings_known is false); the time of each point, else derived from azimuth (the LiDAR turns
+/// clockwise, seen from above; then times_known is false).
 ///
 /// Times may be seconds, milliseconds, microseconds or nanoseconds (told apart by how long the scan lasts), counted from
-/// the stamp, from 1970 or from anywhere. A stamp at the end of the scan is moved to its first point.
+/// the stamp, from 1970 or from anywhere: times that go on from cloud to cloud as the stamps do are not counted from them.
+/// A stamp at the end of the scan is moved to its first point. Times that are all the same mean a scan without motion in it.
 class CloudDecoder {
  public:
   struct Options {
     int rings = 16;
-    bool undistorted = false;  ///< every point counts as fired at the stamp
+    bool undistorted = false;          ///< every point counts as fired at the stamp
+    std::optional<TurnParts> parts{};  ///< clouds are parts of turns
   };
   explicit CloudDecoder(const Options& options) : options_(options), rings_(options.rings) {}
 
@@ -34,8 +38,10 @@ class CloudDecoder {
  private:
   struct Layout;
   Layout layout_of(const PointCloudMessage& cloud, std::string_view place) const;
-  void read_points(const PointCloudMessage& cloud, const Layout& layout, std::string_view place,
-                   LidarScan& scan, std::vector<double>& times);
+  void read_points(const PointCloudMessage& cloud, const Layout& layout, LidarScan& scan,
+                   std::vector<double>& rings, std::vector<double>& times) const;
+  void settle_rings(LidarScan& scan, const std::vector<double>& rings, std::vector<double>& times);
+  double zero_of_times(Time stamp, double first_s, double last_s);
   void set_times(LidarScan& scan, std::vector<double>& times, bool seconds_as_float, std::string_view place);
   void derive_times(LidarScan& scan);
   double unit_s(double span) const;
@@ -44,6 +50,9 @@ class CloudDecoder {
   Options options_;
   RingFinder rings_;
   std::optional<double> unit_s_;
+  std::optional<double> last_first_s_;  // time of the first point of the cloud before, as it has it
+  std::optional<bool> running_;         // do the points' times go on from cloud to cloud?
+  std::optional<Time> last_header_;
   std::optional<Time> last_stamp_;
   double period_s_ = 0.1;
   std::vector<std::string> notes_;

@@ -8,8 +8,9 @@
 
 #include "core/errors.h"
 #include "core/files.h"
+#include "scenarios/datasets/clock_agreement.h"
 #include "scenarios/datasets/cloud_reader.h"
-#include "scenarios/datasets/image_decoder.h"
+#include "scenarios/datasets/message_survey.h"
 #include "scenarios/evaluation/csv.h"
 
 namespace vsslam {
@@ -77,7 +78,7 @@ bool is_folder_recording(const fs::path& folder) {
 
 FolderRecording::FolderRecording(fs::path folder, const RigCalibration& rig,
                                  const CloudDecoder::Options& clouds, bool images)
-    : folder_(std::move(folder)), rig_(rig), clouds_(clouds) {
+    : folder_(std::move(folder)), rig_(rig), options_(clouds), clouds_(clouds) {
   facts_.format = "folder";
   add_scans();
   add_imu();
@@ -86,6 +87,31 @@ FolderRecording::FolderRecording(fs::path folder, const RigCalibration& rig,
                    [](const Entry& a, const Entry& b) { return a.stamp < b.stamp; });
   if (!entries_.empty())
     facts_.expected_duration_s = seconds_between(entries_.front().stamp, entries_.back().stamp);
+  check_clocks();
+  look_at_first_scan();
+}
+
+// When its files were written says nothing of them: clocks can only be found to have nothing in common.
+void FolderRecording::check_clocks() const {
+  std::vector<ReceivedStream> streams;
+  for (const size_t sensor : {kImu, kLidar, kCamera}) {
+    streams.push_back({kSensorNames[sensor], sensor == kLidar ? "scans" : "mav0", {}});
+    for (const Entry& entry : entries_)
+      if (entry.sensor == sensor) streams.back().messages.push_back({entry.stamp, entry.stamp});
+  }
+  plan_clocks(std::move(streams), folder_.string());
+}
+
+void FolderRecording::look_at_first_scan() {
+  const auto first = std::find_if(entries_.begin(), entries_.end(),
+                                  [](const Entry& entry) { return entry.sensor == kLidar; });
+  try {
+    facts_.rings = rings_of_clouds({cloud(*first)}, options_);
+  } catch (const InputError&) {
+    // Whoever reads the scan will come to it, and say where it is.
+  }
+  options_.rings = std::max(options_.rings, facts_.rings);
+  clouds_ = CloudDecoder(options_);
 }
 
 void FolderRecording::list(const std::string& name, const std::string& type, size_t sensor, size_t count) {
@@ -156,23 +182,27 @@ std::optional<RecordedSample> FolderRecording::next() {
   return entry.sensor == kLidar ? scan(entry) : image(entry);
 }
 
+PointCloudMessage FolderRecording::cloud(const Entry& entry) const {
+  const fs::path& path = files_[entry.index].path;
+  PointCloudMessage cloud = path.extension() == ".pcd" ? read_pcd_cloud(path) : read_kitti_cloud(path);
+  cloud.header.stamp = entry.stamp;
+  return cloud;
+}
+
 RecordedSample FolderRecording::scan(const Entry& entry) {
   const File& file = files_[entry.index];
-  PointCloudMessage cloud =
-      file.path.extension() == ".pcd" ? read_pcd_cloud(file.path) : read_kitti_cloud(file.path);
-  cloud.header.stamp = entry.stamp;
-  LidarScan scan = clouds_.decode(cloud, file.path.string());
+  LidarScan scan = clouds_.decode(cloud(entry), file.path.string());
   // Times of points are rounded: the last may be a little after the end.
   if (file.end && *file.end >= scan.end - Duration{1000}) scan.end = *file.end;
   const Time end = scan.end;
   return {std::move(scan), end};
 }
 
-RecordedSample FolderRecording::image(const Entry& entry) const {
+RecordedSample FolderRecording::image(const Entry& entry) {
   const File& file = files_[entry.index];
   const std::string bytes = read_file(file.path);
   CameraFrame frame = decode_image_file({reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()},
-                                        entry.stamp, file.path.string());
+                                        entry.stamp, file.path.string(), &depth_);
   check_image_size(frame, rig_.camera, file.path.string());
   return {std::move(frame), entry.stamp};
 }
@@ -180,6 +210,7 @@ RecordedSample FolderRecording::image(const Entry& entry) const {
 std::vector<std::string> FolderRecording::notes() const {
   std::vector<std::string> notes;
   for (const std::string& note : clouds_.notes()) notes.push_back("lidar: " + note);
+  if (const std::string note = note_of(depth_); !note.empty()) notes.push_back(note);
   return notes;
 }
 

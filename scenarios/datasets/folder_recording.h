@@ -13,6 +13,7 @@
 
 #include "core/calibration.h"
 #include "scenarios/datasets/cloud_decoder.h"
+#include "scenarios/datasets/image_decoder.h"
 #include "scenarios/datasets/recording.h"
 
 namespace vsslam {
@@ -22,7 +23,8 @@ bool is_folder_recording(const std::filesystem::path& folder);
 
 class FolderRecording final : public Recording {
  public:
-  /// Tables are read here, scans and images when they are due. Throws InputError: no scans, a broken table.
+  /// Tables are read here, scans and images when they are due. Throws InputError: no scans, a broken table, sensors on
+  /// clocks that have no time in common.
   FolderRecording(std::filesystem::path folder, const RigCalibration& rig,
                   const CloudDecoder::Options& clouds, bool images);
 
@@ -47,12 +49,17 @@ class FolderRecording final : public Recording {
   void add_imu();
   void add_images();
   void list(const std::string& name, const std::string& type, size_t sensor, size_t count);
+  void check_clocks() const;
+  void look_at_first_scan();
+  PointCloudMessage cloud(const Entry& entry) const;
   RecordedSample scan(const Entry& entry);
-  RecordedSample image(const Entry& entry) const;
+  RecordedSample image(const Entry& entry);
 
   std::filesystem::path folder_;
   RigCalibration rig_;
+  CloudDecoder::Options options_;
   CloudDecoder clouds_;
+  PixelDepth depth_;
   RecordingFacts facts_;
   std::vector<Entry> entries_;  // by stamp
   std::vector<ImuSample> imu_;

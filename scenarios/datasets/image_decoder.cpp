@@ -24,10 +24,9 @@ struct Packing {
 };
 
 constexpr Packing kPackings[] = {
-    {"mono8", 1, 0, 0, 0},       {"8UC1", 1, 0, 0, 0}, {"mono16", 2, 1, 1, 1}, {"16UC1", 2, 1, 1, 1},
-    {"bgr8", 3, 2, 1, 0},        {"8UC3", 3, 2, 1, 0}, {"rgb8", 3, 0, 1, 2},   {"bgra8", 4, 2, 1, 0},
-    {"rgba8", 4, 0, 1, 2},       {"8UC4", 4, 2, 1, 0}, {"yuv422", 2, 1, 1, 1}, {"uyvy", 2, 1, 1, 1},
-    {"yuv422_yuy2", 2, 0, 0, 0}, {"yuyv", 2, 0, 0, 0},
+    {"mono8", 1, 0, 0, 0},  {"8UC1", 1, 0, 0, 0},  {"bgr8", 3, 2, 1, 0},        {"8UC3", 3, 2, 1, 0},
+    {"rgb8", 3, 0, 1, 2},   {"bgra8", 4, 2, 1, 0}, {"rgba8", 4, 0, 1, 2},       {"8UC4", 4, 2, 1, 0},
+    {"yuv422", 2, 1, 1, 1}, {"uyvy", 2, 1, 1, 1},  {"yuv422_yuy2", 2, 0, 0, 0}, {"yuyv", 2, 0, 0, 0},
 };
 
 // Which of a 2 x 2 block's pixels, row by row, is red, and which is blue; the other two are green.
@@ -53,10 +52,30 @@ CameraFrame frame_for(const ImageMessage& image) {
   return frame;
 }
 
-CameraFrame unpack(const ImageMessage& image, Packing packing, std::string_view place) {
+bool has_16_bits(const ImageMessage& image) {
+  return image.encoding == "mono16" || image.encoding == "16UC1";
+}
+
+template <class EachValue>
+void each_of_16_bits(const ImageMessage& image, EachValue&& each) {
+  const size_t upper = image.is_bigendian ? 0 : 1;
+  for (uint32_t row = 0; row < image.height; ++row) {
+    const uint8_t* pixel = image.data.data() + size_t{row} * image.step;
+    for (uint32_t column = 0; column < image.width; ++column, pixel += 2)
+      each(static_cast<uint32_t>(pixel[upper] << 8 | pixel[1 - upper]));
+  }
+}
+
+CameraFrame unpack_16_bits(const ImageMessage& image, int bits, std::string_view place) {
+  check_size(image, 2, place);
+  CameraFrame frame = frame_for(image);
+  uint8_t* out = frame.grey.data();
+  each_of_16_bits(image, [&](uint32_t value) { *out++ = static_cast<uint8_t>(value >> (bits - 8)); });
+  return frame;
+}
+
+CameraFrame unpack(const ImageMessage& image, const Packing& packing, std::string_view place) {
   check_size(image, packing.bytes, place);
-  if (image.encoding == "mono16" || image.encoding == "16UC1")
-    packing.red = packing.green = packing.blue = image.is_bigendian ? 0 : 1;
   CameraFrame frame = frame_for(image);
   uint8_t* out = frame.grey.data();
   for (uint32_t row = 0; row < image.height; ++row) {
@@ -93,7 +112,27 @@ CameraFrame demosaic(const ImageMessage& image, const Mosaic& mosaic, std::strin
 
 }  // namespace
 
-CameraFrame decode_image(const ImageMessage& image, std::string_view place) {
+int PixelDepth::after(const ImageMessage& image) {
+  if (!has_16_bits(image)) return bits_;
+  check_size(image, 2, "image");
+  uint32_t used = 0;
+  each_of_16_bits(image, [&](uint32_t value) { used |= value; });
+  int bits = 8;
+  while (used >> bits != 0) bits += 2;
+  return bits_ = std::max(bits_, bits);
+}
+
+std::string note_of(const PixelDepth& depth) {
+  if (depth.bits() == 0 || depth.bits() == 16) return {};
+  return fmt::format("camera: of its pixels' 16 bits the lower {} are used: the upper 8 of these are taken",
+                     depth.bits());
+}
+
+CameraFrame decode_image(const ImageMessage& image, std::string_view place, PixelDepth* depth) {
+  if (has_16_bits(image)) {
+    check_size(image, 2, place);
+    return unpack_16_bits(image, depth == nullptr ? 16 : depth->after(image), place);
+  }
   for (const Packing& packing : kPackings)
     if (packing.encoding == image.encoding) return unpack(image, packing, place);
   for (const Mosaic& mosaic : kMosaics)
@@ -105,14 +144,16 @@ CameraFrame decode_image(const ImageMessage& image, std::string_view place) {
                   place, image.encoding));
 }
 
-CameraFrame decode_compressed(const CompressedImageMessage& image, std::string_view place) {
-  return decode_image_file(image.data, image.header.stamp, place);
+CameraFrame decode_compressed(const CompressedImageMessage& image, std::string_view place,
+                              PixelDepth* depth) {
+  return decode_image_file(image.data, image.header.stamp, place, depth);
 }
 
-CameraFrame decode_image_file(std::span<const uint8_t> bytes, Time stamp, std::string_view place) {
+CameraFrame decode_image_file(std::span<const uint8_t> bytes, Time stamp, std::string_view place,
+                              PixelDepth* depth) {
   ImageMessage image = read_image_file(bytes, place);
   image.header.stamp = stamp;
-  return decode_image(image, place);
+  return decode_image(image, place, depth);
 }
 
 void check_image_size(const CameraFrame& frame, const CameraCalibration& camera, std::string_view place) {

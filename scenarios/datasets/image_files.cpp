@@ -101,10 +101,18 @@ ImageMessage read_png(std::span<const uint8_t> bytes, std::string_view place) {
   if (!png_image_begin_read_from_memory(&png, bytes.data(), bytes.size())) fail();
   check_size(png.width, png.height, place);
   const bool color = (png.format & PNG_FORMAT_FLAG_COLOR) != 0;
-  png.format = color ? PNG_FORMAT_RGB : PNG_FORMAT_GRAY;
-  ImageMessage image = image_of(png.width, png.height, color ? "rgb8" : "mono8", color ? 3 : 1);
+  const bool deep = !color && (png.format & PNG_FORMAT_FLAG_LINEAR) != 0;  // 16 bits
+  png.format = color ? PNG_FORMAT_RGB : deep ? PNG_FORMAT_LINEAR_Y : PNG_FORMAT_GRAY;
+  ImageMessage image = image_of(png.width, png.height,
+                                color  ? "rgb8"
+                                : deep ? "mono16"
+                                       : "mono8",
+                                color  ? 3
+                                : deep ? 2
+                                       : 1);
   const png_color black{};
-  if (!png_image_finish_read(&png, &black, image.data.data(), static_cast<png_int_32>(image.step), nullptr))
+  if (!png_image_finish_read(&png, &black, image.data.data(),
+                             static_cast<png_int_32>(deep ? image.width : image.step), nullptr))
     fail();
   return image;
 }

@@ -165,7 +165,9 @@ Message ChunkedReader::decode(const Pending& pending) {
   const RecordedConnection& connection = index_.connections.at(place.connection);
   try {
     const std::string_view bytes = std::string_view(content.bytes).substr(place.offset, place.size);
-    return {connection.topic, pending.recorded, decode_message(connection.type, bytes, *connection.format)};
+    return {connection.topic, pending.recorded,
+            options_.headers_only ? decode_header(connection.type, bytes, *connection.format)
+                                  : decode_message(connection.type, bytes, *connection.format)};
   } catch (const InputError& error) {
     throw InputError(fmt::format("message on {} at {:.3f} s: {}", connection.topic,
                                  pending.recorded.seconds(), error.what()));

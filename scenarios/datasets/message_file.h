@@ -37,6 +37,7 @@ struct ReadOptions {
   bool salvage = false;               ///< of a broken or truncated file, read what is before the break
   /// Chunks that overlap in time stay decompressed up to so much; what was let go is read again.
   size_t chunk_memory_bytes = size_t{256} << 20;
+  bool headers_only = false;  ///< of a message's content only the header is filled
 };
 
 /// Reads in order of recording, in bounded memory. Not thread-safe.

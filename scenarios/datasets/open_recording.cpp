@@ -19,6 +19,20 @@ namespace {
 // Of chunks that overlap in time there are a few, of about 1 MB.
 constexpr size_t kChunkMemoryBytes = size_t{64} << 20;
 
+MessageSurvey survey_of(const fs::path& path, const ReadOptions& read, const TopicChoice& choice,
+                        const CloudDecoder::Options& clouds, const std::string& file) {
+  ReadOptions first = read, headers = read;
+  std::erase_if(first.topics, [&](const std::string& topic) {
+    return topic != choice.at("lidar") && (!choice.contains("camera") || topic != choice.at("camera"));
+  });
+  headers.headers_only = true;
+  MessageSurvey survey;
+  survey.look = look_at_first(*read_messages(path, first), clouds);
+  survey.clocks =
+      plan_clocks(received_streams(*read_messages(path, headers), choice, survey.look.scan_lasts), file);
+  return survey;
+}
+
 std::unique_ptr<Recording> open_messages(const fs::path& path, const RigSheet& sheet,
                                          const RecordingOptions& options,
                                          const CloudDecoder::Options& clouds) {
@@ -35,7 +49,8 @@ std::unique_ptr<Recording> open_messages(const fs::path& path, const RigSheet& s
   read.chunk_memory_bytes = kChunkMemoryBytes;
   for (const auto& [sensor, topic] : choice) read.topics.push_back(topic);
   return std::make_unique<MessageRecording>(read_messages(path, read), file, choice, sheet.calibration,
-                                            clouds, notes, topics);
+                                            clouds, notes, topics,
+                                            survey_of(path, read, choice, clouds, file));
 }
 
 // Of a dataset's folder, what is in it to be read.

@@ -23,7 +23,8 @@ inline Time stamp_of(const Sample& sample) {
 
 struct RecordedSample {
   Sample sample;
-  Time end;  ///< of its acquisition, on the clock of the stamps
+  Time end;            ///< of its acquisition, on the clock of the stamps
+  bool moved = false;  ///< its stamp was moved to the clock of the others
 };
 
 /// A topic or a file that a recording has.
@@ -39,6 +40,7 @@ struct RecordingFacts {
   std::vector<RecordedStream> streams;  ///< sorted by name
   double expected_duration_s = 0;
   bool has[kSensors] = {};  ///< by index of Sample
+  int rings = 0;            ///< that the first scans' points tell of; 0: they tell nothing
 };
 
 /// Not thread-safe.
@@ -46,9 +48,13 @@ class Recording {
  public:
   virtual ~Recording() = default;
   virtual const RecordingFacts& facts() const = 0;
-  /// In order of recording, which is about that of `end`; nullopt: the end. Stamps as recorded. Throws InputError
-  /// that names the topic or file and the message.
+  /// In order of recording, which is about that of `end`; nullopt: the end. Stamps as recorded, but for those that
+  /// were moved. Throws InputError that names the topic or file and the message.
   virtual std::optional<RecordedSample> next() = 0;
+  /// Samples that are put in order of `end` within it: none comes later, as far as is known beforehand.
+  virtual Duration window() const { return {1'000'000'000}; }
+  /// So many of a sensor's messages could not be read so far, and were left out.
+  virtual int64_t unreadable([[maybe_unused]] size_t sensor) const { return 0; }
   /// T_world_base as far as it was read.
   virtual const std::vector<StampedPose>& truth_world_base() const { return no_truth_; }
   /// What was guessed or found odd so far, one line each.

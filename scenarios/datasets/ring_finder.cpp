@@ -1,5 +1,7 @@
 #include "scenarios/datasets/ring_finder.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -37,7 +39,55 @@ bool fits(const std::vector<double>& table, const std::vector<double>& seen) {
   return on >= 0.9 * static_cast<double>(seen.size());
 }
 
+// Elevations that gather in narrow bands with wide gaps between them: the bands' means. Empty: they do not.
+std::vector<double> gathered(std::vector<double> seen) {
+  constexpr size_t kMost = 128, kEach = 10;
+  constexpr double kClean = 3;
+  std::sort(seen.begin(), seen.end());
+  std::vector<double> gaps;
+  for (size_t i = 1; i < seen.size(); ++i) gaps.push_back(seen[i] - seen[i - 1]);
+  std::sort(gaps.begin(), gaps.end(), std::greater<>());
+  size_t between = 0;  // gaps that are none within a band
+  double most = kClean;
+  for (size_t k = 1; k < std::min(kMost, gaps.size()) && (k + 1) * kEach <= seen.size(); ++k)
+    if (const double ratio = gaps[k - 1] / std::max(gaps[k], 1e-6); ratio > most) most = ratio, between = k;
+  if (between == 0) return {};
+  std::vector<double> means;
+  size_t begin = 0;
+  for (size_t i = 1; i <= seen.size(); ++i) {
+    if (i < seen.size() && seen[i] - seen[i - 1] < gaps[between - 1]) continue;
+    if (seen[i - 1] - seen[begin] > gaps[between - 1] / 2) return {};
+    double sum = 0;
+    for (size_t k = begin; k < i; ++k) sum += seen[k];
+    means.push_back(sum / static_cast<double>(i - begin));
+    begin = i;
+  }
+  return means;
+}
+
+bool is_ring(double ring, int most_rings) {
+  return ring >= 0 && ring < most_rings && ring == std::floor(ring);
+}
+
 }  // namespace
+
+std::optional<std::string> fault_of_rings(const std::vector<LidarPoint>& points,
+                                          const std::vector<double>& rings, int most_rings) {
+  if (points.empty()) return std::nullopt;
+  size_t wrong = 0, example = 0;
+  for (size_t i = 0; i < rings.size(); ++i)
+    if (!is_ring(rings[i], most_rings) && wrong++ == 0) example = i;
+  if (wrong * 100 > rings.size())
+    return fmt::format("rings that there are not (such as {}, of {})", rings[example], most_rings);
+  if (std::any_of(rings.begin(), rings.end(), [&](double ring) { return ring != rings.front(); }))
+    return std::nullopt;
+  constexpr double kFlat = std::numbers::pi / 180;
+  const auto [low, high] = std::minmax_element(
+      points.begin(), points.end(),
+      [](const LidarPoint& a, const LidarPoint& b) { return elevation_rad(a) < elevation_rad(b); });
+  if (elevation_rad(*high) - elevation_rad(*low) < kFlat) return std::nullopt;
+  return fmt::format("all points are of ring {}", rings.front());
+}
 
 void RingFinder::learn(const std::vector<LidarPoint>& points) {
   std::vector<double> seen;
@@ -46,6 +96,7 @@ void RingFinder::learn(const std::vector<LidarPoint>& points) {
     const std::vector<double> table = elevations_of(model);
     if (static_cast<int>(table.size()) == rings_ && fits(table, seen)) elevations_rad_ = table;
   }
+  if (elevations_rad_.empty()) elevations_rad_ = gathered(seen);
   if (!elevations_rad_.empty()) return;
   const auto [low, high] = std::minmax_element(seen.begin(), seen.end());
   for (int ring = 0; ring < rings_; ++ring)

@@ -14,6 +14,13 @@ int64_t whole_second_before(Time t) {
   return t.ns - (rest < 0 ? rest + kSecond : rest);
 }
 
+size_t bytes_of(const Sample& sample) {
+  size_t bytes = sizeof(RecordedSample);
+  if (const auto* scan = std::get_if<LidarScan>(&sample)) bytes += scan->points.size() * sizeof(LidarPoint);
+  if (const auto* frame = std::get_if<CameraFrame>(&sample)) bytes += frame->grey.size();
+  return bytes;
+}
+
 }  // namespace
 
 std::optional<int64_t> SampleOrder::Intervals::usual_ns() const {
@@ -33,11 +40,18 @@ void SampleOrder::Intervals::add(int64_t ns) {
   }
 }
 
+bool SampleOrder::enough() const {
+  if (waiting_.empty()) return false;
+  return bytes_ > most_bytes_ || *newest_ - std::get<Time>(waiting_.begin()->first) >= window_;
+}
+
 // One more than the window: what is older than its newest cannot be overtaken any more.
 void SampleOrder::fill() {
   constexpr Duration kLeap{10'000'000'000};
-  while (!ended_ && (waiting_.empty() || *newest_ - std::get<Time>(waiting_.begin()->first) < window_)) {
+  while (!ended_ && !enough()) {
     std::optional<RecordedSample> sample = recording_.next();
+    for (size_t sensor = 0; sensor < kSensors; ++sensor)
+      counts_[sensor].unreadable = recording_.unreadable(sensor);
     if (!sample) {
       ended_ = true;
       if (ahead_) ++counts_[ahead_->sample.index()].stray;
@@ -62,6 +76,7 @@ void SampleOrder::take(RecordedSample sample) {
   }
   newest_ = newest_ ? std::max(*newest_, sample.end) : sample.end;
   const Key key{sample.end, sensor, arrived_++};
+  bytes_ += bytes_of(sample.sample);
   waiting_.emplace(key, std::move(sample));
 }
 
@@ -75,6 +90,7 @@ std::optional<RecordedSample> SampleOrder::next() {
       epoch_ = Duration{whole_second_before(earliest)};
     }
     RecordedSample sample = std::move(waiting_.extract(waiting_.begin()).mapped());
+    bytes_ -= bytes_of(sample.sample);
     released_ = sample.end;
     if (accept(sample)) return counted_from_epoch(std::move(sample));
   }
@@ -94,6 +110,7 @@ bool SampleOrder::accept(const RecordedSample& sample) {
   }
   watch(sensor, stamp);
   ++counts.used;
+  counts.moved += sample.moved;
   return true;
 }
 

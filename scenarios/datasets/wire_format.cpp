@@ -100,4 +100,16 @@ MessageContent decode_message(std::string_view type, std::string_view bytes, Wir
   return std::move(*content);
 }
 
+MessageContent decode_header(std::string_view type, std::string_view bytes, WireFormat format) {
+  std::optional<MessageContent> content = empty_message(type);
+  if (!content) throw InputError(fmt::format("messages of type {} are not known here", type));
+  WireReader reader(format, bytes);
+  std::visit(
+      [&](auto& message) {
+        if constexpr (requires { message.header; }) members(reader, message.header);
+      },
+      *content);
+  return std::move(*content);
+}
+
 }  // namespace vsslam

@@ -21,4 +21,7 @@ void encode_message(const MessageContent& content, WireFormat format, std::strin
 /// zeros the identity; ImuMessage::orientation stays as it is. Throws InputError if `bytes` are no such message.
 MessageContent decode_message(std::string_view type, std::string_view bytes, WireFormat format);
 
+/// The same with nothing but the header filled, of messages that have one; what follows it is not looked at.
+MessageContent decode_header(std::string_view type, std::string_view bytes, WireFormat format);
+
 }  // namespace vsslam

@@ -44,6 +44,26 @@ TEST(ImageDecoder, MakesGreyOfEveryEncoding) {
   EXPECT_THAT(grey_of(image("rgb8", 1, 1, {93, 93, 93})), ElementsAre(93));
 }
 
+TEST(ImageDecoder, TakesTheUpperEightOfTheBitsThatAreUsed) {
+  const auto of_bits = [](int bits) {
+    const int largest = (1 << bits) - 1, less = largest / 4;
+    ImageMessage message = image("mono16", 2, 1, {0, 0, 0, 0});
+    message.data = {static_cast<uint8_t>(largest), static_cast<uint8_t>(largest >> 8),
+                    static_cast<uint8_t>(less), static_cast<uint8_t>(less >> 8)};
+    return message;
+  };
+  for (const int bits : {8, 10, 12, 14, 16}) {
+    PixelDepth depth;
+    EXPECT_THAT(decode_image(of_bits(bits), "here", &depth).grey, ElementsAre(255, 63)) << bits;
+    EXPECT_EQ(depth.bits(), bits);
+    EXPECT_EQ(note_of(depth).empty(), bits == 16);
+  }
+  PixelDepth depth;
+  decode_image(of_bits(10), "here", &depth);
+  EXPECT_THAT(decode_image(of_bits(12), "here", &depth).grey, ElementsAre(255, 63));
+  EXPECT_THAT(decode_image(of_bits(10), "here", &depth).grey, ElementsAre(63, 15));
+}
+
 TEST(ImageDecoder, DemosaicsToTheLumaOfEachBlock) {
   // Red 255 and nothing else, on 4 x 2 pixels.
   const std::vector<uint8_t> red_first = {255, 0, 255, 0, 0, 0, 0, 0};

@@ -42,8 +42,9 @@ class GivenMessages : public MessageReader {
 const TopicChoice kTopics = {
     {"lidar", "/points"}, {"imu", "/imu"}, {"camera", "/image"}, {"wheels", "/wheels"}, {"truth", "/truth"}};
 
-MessageRecording recording(std::vector<Message> messages, const RigCalibration& rig = {}) {
-  return {std::make_unique<GivenMessages>(std::move(messages)), "a.bag", kTopics, rig, {}, {}, {}};
+MessageRecording recording(std::vector<Message> messages, const RigCalibration& rig = {},
+                           const MessageSurvey& survey = {}) {
+  return {std::make_unique<GivenMessages>(std::move(messages)), "a.bag", kTopics, rig, {}, {}, {}, survey};
 }
 
 ImuMessage imu(double s, double accel_mps2 = 9.81) {
@@ -94,6 +95,39 @@ TEST(MessageRecording, SaysWhenTheSpecificForceIsInG) {
       EXPECT_THAT(read.notes(), IsEmpty());
     }
   }
+}
+
+TEST(MessageRecording, StampsAreMovedToTheClockOfTheOthers) {
+  MessageSurvey survey;
+  survey.clocks.shifts["lidar"] = {{0, {}}, {1, Duration{5'000'000'000}}};
+  MessageRecording read = recording({{"/points", at(10.0625), cloud_message(scan(10), "lidar")},
+                                     {"/points", at(10.163), cloud_message(scan(5.1), "lidar")}},
+                                    {}, survey);
+  const auto first = read.next(), second = read.next();
+  EXPECT_FALSE(first->moved);
+  EXPECT_EQ(stamp_of(first->sample), at(10));
+  EXPECT_TRUE(second->moved);
+  EXPECT_EQ(stamp_of(second->sample), at(10.1));
+  EXPECT_EQ(second->end, at(10.163));
+  EXPECT_EQ(std::get<LidarScan>(second->sample).end, second->end);
+}
+
+TEST(MessageRecording, ABrokenPictureAmongGoodOnesIsLeftOut) {
+  ImageMessage good;
+  good.encoding = "mono8";
+  good.width = good.height = good.step = 2;
+  good.data.resize(4);
+  ImageMessage broken = good;
+  broken.data.pop_back();
+  RigCalibration rig;
+  rig.camera.width_px = rig.camera.height_px = 2;
+  MessageRecording read =
+      recording({{"/image", at(1), good}, {"/image", at(2), broken}, {"/image", at(3), good}}, rig);
+  EXPECT_TRUE(read.next());
+  EXPECT_TRUE(read.next());
+  EXPECT_FALSE(read.next());
+  EXPECT_EQ(read.unreadable(3), 1);
+  EXPECT_THAT(read.notes(), Contains(HasSubstr("left out: a.bag: /image message 1")));
 }
 
 TEST(MessageRecording, WheelsComeFromJointsToTheBit) {

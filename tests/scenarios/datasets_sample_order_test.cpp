@@ -24,7 +24,9 @@ class GivenSamples : public Recording {
   std::optional<RecordedSample> next() override {
     return taken == samples_.size() ? std::nullopt : std::optional(samples_[taken++]);
   }
+  Duration window() const override { return needs; }
   size_t taken = 0;
+  Duration needs{1'000'000'000};
 
  private:
   static Time at(int64_t ms) { return {kEpoch_ns + ms * 1'000'000}; }
@@ -79,6 +81,24 @@ TEST(SampleOrder, HoldsNoMoreThanTheWindow) {
   SampleOrder order(given, Duration{100'000'000});
   for (size_t used = 1; order.next(); ++used) ASSERT_LE(given.taken, used + 11);
   EXPECT_EQ(order.counts(0).used, 1000);
+}
+
+TEST(SampleOrder, WaitsAsLongAsTheRecordingNeedsButNotBeyondItsMemory) {
+  GivenSamples given;
+  given.needs = Duration{5'000'000'000};
+  for (int i = 0; i <= 300; ++i) {
+    given.imu(10 * i);
+    if (i >= 210 && i % 10 == 0) given.scan(10 * i - 2100, 10 * i - 2000);
+  }
+  SampleOrder patient(given);
+  order_of(patient);
+  EXPECT_EQ(patient.counts(2).used, 10);
+  EXPECT_EQ(patient.counts(2).late, 0);
+  given.taken = 0;
+  SampleOrder short_of_memory(given, std::nullopt, 1000);
+  order_of(short_of_memory);
+  EXPECT_EQ(short_of_memory.counts(2).late, 10);
+  EXPECT_EQ(short_of_memory.counts(0).used, 301);
 }
 
 TEST(SampleOrder, AStampThatRunsAheadAloneIsDropped) {

@@ -309,6 +309,72 @@ TEST(Replay, ReadsFoldersOfScansWithEurocsImu) {
   EXPECT_TRUE(read_file(result("euroc") / "map.ply") == read_file(result("no_wheels") / "map.ply"));
 }
 
+/// The drive with each cloud as `parts` clouds, as drivers send packets or quarters of a turn: stamped at their first points.
+fs::path in_parts(const std::string& name, size_t parts) {
+  const fs::path folder = dataset(name, true);
+  const auto writer = write_bag(folder / "drive.bag");
+  for (const Message& message : recorded_drive().messages) {
+    const auto* cloud = std::get_if<PointCloudMessage>(&message.content);
+    if (cloud == nullptr) {
+      writer->write(message);
+      continue;
+    }
+    const LidarScan scan = CloudDecoder({}).decode(*cloud, "");
+    for (size_t i = 0; i < parts; ++i) {
+      const float begin_s = 0.1f * static_cast<float>(i) / static_cast<float>(parts),
+                  end_s = 0.1f * static_cast<float>(i + 1) / static_cast<float>(parts);
+      LidarScan part{.stamp = scan.stamp + Duration::from_seconds(begin_s), .end = {}, .points = {}};
+      for (LidarPoint p : scan.points)
+        if (p.time_s >= begin_s && p.time_s < end_s) p.time_s -= begin_s, part.points.push_back(p);
+      writer->write(
+          {message.topic, scan.stamp + Duration::from_seconds(end_s), cloud_message(part, "lidar")});
+    }
+  }
+  writer->finish();
+  return folder;
+}
+
+TEST(Replay, PutsPartsOfTurnsTogether) {
+  for (const size_t parts : {2u, 4u, 75u}) {
+    const std::string name = fmt::format("parts_{}", parts);
+    const fs::path folder = in_parts(name, parts);
+    const Outcome outcome = replay(folder, {"--truth", (folder / "truth.txt").string()});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("clouds are parts of turns"));
+    const nlohmann::json lidar = json_of(result(name) / "recording.json")["samples"]["lidar"];
+    EXPECT_NEAR(lidar["used"].get<double>(), static_cast<double>(recorded_drive().truth_world_base.size()),
+                2);
+    EXPECT_LT(json_of(result(name) / "metrics.json")["ate_rmse_m"], 0.02) << parts;
+  }
+}
+
+/// The drive with the rings that these become.
+fs::path with_rings(const std::string& name, const std::function<int(const LidarPoint&)>& ring_of) {
+  return dataset(name, true, [&](Message& message) {
+    if (auto* cloud = std::get_if<PointCloudMessage>(&message.content)) {
+      LidarScan scan = CloudDecoder({}).decode(*cloud, "");
+      for (LidarPoint& p : scan.points) p.ring = static_cast<uint16_t>(ring_of(p));
+      *cloud = cloud_message(scan, "lidar");
+      cloud->header.stamp = scan.stamp;
+    }
+    return true;
+  });
+}
+
+TEST(Replay, RingsThatSayNothingOrAreMoreThanTheSheetsAreNoError) {
+  const auto error_m = [](const fs::path& folder, const char* note) {
+    const Outcome outcome = replay(folder, {"--truth", (folder / "truth.txt").string()});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr(note));
+    return json_of(result(folder.filename()) / "metrics.json")["ate_rmse_m"].get<double>();
+  };
+  EXPECT_LT(error_m(with_rings("zero", [](const LidarPoint&) { return 0; }), "says nothing"), 0.02);
+  EXPECT_LT(error_m(with_rings("wild", [](const LidarPoint& p) { return p.ring + 5000; }), "says nothing"),
+            0.02);
+  const fs::path doubled = with_rings("doubled", [](const LidarPoint& p) { return 2 * p.ring + 1; });
+  EXPECT_LT(error_m(doubled, "points of 32 rings, but the rig's sheet has 16"), 0.02);
+}
+
 fs::path kitti_folder(const std::string& name) {
   const fs::path folder = scratch_folder() / name;
   std::string times;
