@@ -19,6 +19,7 @@ void Scenario::fields(Fields& f) {
   f("rig", rig);
   f("drive", drive);
   f("events", events);
+  f("handed", handed);
   f("methods", methods);
   f("slam", slam);
   f("seeds", seeds);

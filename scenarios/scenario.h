@@ -10,6 +10,7 @@
 
 #include "core/config.h"
 #include "scenarios/expectations.h"
+#include "scenarios/handed.h"
 #include "scenarios/world_events.h"
 #include "sensors/rig.h"
 #include "sim/drive_script.h"
@@ -29,6 +30,7 @@ struct Scenario {
   RigConfig rig;
   DriveScript drive;
   EventsConfig events;
+  HandedConfig handed;
   std::vector<std::string> methods{"vs-slam"};  ///< names, or "all"
   SlamConfig slam;
   std::vector<uint64_t> seeds{1};      ///< of the sensors' noise

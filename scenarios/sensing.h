@@ -27,7 +27,7 @@ struct Chunk {
   bool has_truth() const { return !scans.empty(); }
 };
 
-/// Not thread-safe; one per seed.
+/// Not thread-safe; one per seed. Its chunks hold what the estimator is handed.
 class Sensing {
  public:
   Sensing(const Scenario& scenario, const World& world, uint64_t seed, StageClock* clock);
@@ -39,9 +39,13 @@ class Sensing {
   const Raycaster& raycaster() { return rig_.raycaster(); }
 
  private:
+  void hand(Measurement&& measurement, Chunk& chunk);
   void add_truth(Chunk& chunk) const;
 
   StageClock* clock_;
+  HandedConfig handed_;
+  ScanDisturber disturber_;
+  int64_t delivered_scans_ = 0;
   Rig rig_;
   SE3 T_lidar_base_;
 };
