@@ -65,6 +65,7 @@ class ReplayedRecording final : public MeasurementSource {
   void add_note(const std::string& text);
   void tell_notes();
   void note_gaps();
+  SourceHealth source_health() const;
   std::string recording_json() const;
 
   std::filesystem::path path_, out_;

@@ -40,7 +40,8 @@ const std::vector<Group>& groups() {
         {"/rpe_10m_deg", "RPE over 10 m, rotation", "°", 3, Better::low},
         {"/odometry_ate_rmse_m", "Odometry ATE RMSE", "m", 3, Better::low},
         {"/vio_ate_rmse_m", "VIO ATE RMSE", "m", 3, Better::low},
-        {"/map_error_mean_m", "Map to surface, mean", "m", 3, Better::low}}},
+        {"/map_error_mean_m", "Map to surface, mean", "m", 3, Better::low},
+        {"/coverage", "Scans with truth", "", 3, Better::high}}},
       {"Loops",
        {{"/loops/candidates", "Candidates", "", 0},
         {"/loops/accepted", "Accepted", "", 0},
@@ -63,7 +64,9 @@ const std::vector<Group>& groups() {
         {"/path_length_m", "Path length", "m", 1},
         {"/scans", "Scans", "", 0},
         {"/images", "Images", "", 0},
-        {"/restarts", "Restarts", "", 0, Better::low}}},
+        {"/restarts", "Restarts", "", 0, Better::low},
+        {"/health/scans_prior_only", "Scans without the LiDAR", "", 0, Better::low},
+        {"/health/scans_unconverged", "Scans not converged", "", 0, Better::low}}},
   };
   return kGroups;
 }
