@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "scenarios/health/health.h"
 #include "scenarios/report/page_tables.h"
 
 namespace vsslam {
@@ -142,6 +143,14 @@ std::string one_html(const StoredResult& result, bool named) {
 }
 
 }  // namespace
+
+bool lidar_blind(const StoredResult& result) {
+  const json health = health_of(result);
+  if (member(health, "worthless").is_string()) return true;
+  const json without = member(health, "scans_prior_only"), scans = member(*result.metrics, "scans");
+  return without.is_number() && scans.is_number() &&
+         without.get<double>() > kBlindShare * scans.get<double>();
+}
 
 std::string health_verdict_html(std::span<const StoredResult> results) {
   size_t worthless = 0, warnings = 0, known = 0;

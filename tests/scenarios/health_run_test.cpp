@@ -63,7 +63,7 @@ TEST(HealthOfARun, WithASilentLidarIsWorthlessToo) {
   const auto [outcome, metrics, page] =
       run_with("silent", "events: {lidar_dropouts: [{from_s: 0.5, to_s: 1.9}]}\n");
   EXPECT_EQ(outcome.code, kExpectationFailed) << outcome.out << outcome.err;
-  EXPECT_THAT(outcome.out, AllOf(HasSubstr("warning: lidar: no scans for 1.5 s"), HasSubstr("WORTHLESS: ")));
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("warning: lidar: no scans for 1.3 s"), HasSubstr("WORTHLESS: ")));
   EXPECT_THAT(metrics["health"]["worthless"].get<std::string>(), HasSubstr("silent for"));
 }
 

@@ -277,6 +277,7 @@ TEST(Report, TellsOfTheHealthOfTheSensors) {
   write_file(folder / "metrics.json", metrics.dump());
   EXPECT_THAT(report_of(folder),
               HasSubstr("<span class=\"chip bad\">worthless</span> the LiDAR gave nothing"));
+  EXPECT_THAT(report_of(folder), HasSubstr("<td>0.180 <span class=\"chip bad\">!</span></td>"));
 }
 
 TEST(Report, DrawsTheErrorThatTheScoreFinds) {
