@@ -135,7 +135,8 @@ int run_cli(const std::vector<std::string>& arguments, std::ostream& out, std::o
         Command command;
         CLI::App app(
             "VS-SLAM Testbed: simulate a Scout in a corridor, run SLAM in the loop, score it against exact "
-            "truth.\nExit codes: 0 done as expected, 1 an expectation failed, 2 bad input, 3 stopped.",
+            "truth.\nExit codes: 0 done as expected, 1 an expectation failed or a result is worthless, 2 bad "
+            "input, 3 stopped.",
             "vsslam");
         app.require_subcommand(1);
         app.set_help_all_flag("--help-all", "help of every command");

@@ -16,7 +16,7 @@ class App;
 
 namespace vsslam {
 
-/// Exit codes.
+/// Exit codes. A result that is worthless (Health) counts as a failed expectation.
 inline constexpr int kDone = 0, kExpectationFailed = 1, kBadInput = 2, kStopped = 3;
 
 /// Options that every command has, and where it prints.

@@ -4,6 +4,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "core/errors.h"
 #include "scenarios/cli.h"
 #include "scenarios/evaluation/score.h"
 #include "scenarios/evaluation/trajectory_file.h"
@@ -29,16 +30,24 @@ std::string text_of(const TrajectoryScore& s) {
   return fmt::format(
       "ATE RMSE {:.6f} m  mean {:.6f} m  max {:.6f} m\nRPE over 10 m {} %  {} deg\nend error {:.6f} m  path "
       "{:.3f} m  "
-      "{} pairs\n",
+      "{} pairs  coverage {:.3f}\n",
       s.ate_rmse_m, s.ate_mean_m, s.ate_max_m, figure(s.rpe_10m_percent), figure(s.rpe_10m_deg),
-      s.end_error_m, s.path_length_m, s.pairs);
+      s.end_error_m, s.path_length_m, s.pairs, s.coverage);
 }
 
 int evaluate(const EvaluateArguments& arguments, const Console& console) {
   ScoreOptions options;
   options.alignment = parse_alignment(arguments.alignment);
-  const TrajectoryScore s = score(read_trajectory(arguments.estimate), read_trajectory(arguments.truth),
-                                  options, {arguments.estimate, arguments.truth});
+  const PoseTrajectory estimate = read_trajectory(arguments.estimate),
+                       truth = read_trajectory(arguments.truth);
+  const TrajectoryScore s = score(estimate, truth, options, {arguments.estimate, arguments.truth});
+  if (options.alignment != Alignment::none)
+    if (const std::string why = why_alignment_open(estimate, truth, s); !why.empty())
+      throw InputError(fmt::format("{}: {}; --align none compares without", arguments.estimate, why));
+  if (s.coverage < kLeastCoverage)
+    console.err << fmt::format(
+        "warning: only {:.1f} % of the estimate has truth: the figures tell of that alone\n",
+        100 * s.coverage);
   console.text() << text_of(s);
   if (!console.json) return kDone;
   const auto number = [](const std::optional<double>& value) {
@@ -49,7 +58,8 @@ int evaluate(const EvaluateArguments& arguments, const Console& console) {
                                        {"ate_max_m", s.ate_max_m},
                                        {"rpe_10m_percent", number(s.rpe_10m_percent)},
                                        {"rpe_10m_deg", number(s.rpe_10m_deg)},
-                                       {"pairs", s.pairs}};
+                                       {"pairs", s.pairs},
+                                       {"coverage", s.coverage}};
   console.out << json.dump(2) << '\n';
   return kDone;
 }

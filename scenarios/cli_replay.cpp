@@ -60,8 +60,10 @@ int replay(const ReplayArguments& arguments, const Console& console) {
       request_of(arguments, console), [&shown = *progress](const std::string& note) { shown.note(note); });
   Runner runner(std::move(source), resolve_methods(split_list(arguments.methods)),
                 {.out = console.out_folder, .threads = console.threads});
-  run_and_summarize(runner, std::move(progress), console);
-  return kDone;
+  const std::vector<FinishedRun> runs = run_and_summarize(runner, std::move(progress), console);
+  const bool good =
+      std::all_of(runs.begin(), runs.end(), [](const FinishedRun& r) { return r.as_expected(); });
+  return good ? kDone : kExpectationFailed;
 }
 
 }  // namespace

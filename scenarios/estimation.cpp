@@ -23,22 +23,27 @@ OdometryRun::OdometryRun(const EstimatorSetup& setup, StageClock* clock)
     : clock_(clock),
       scan_context_(setup.slam.loop.scan_context),
       mount_height_m_(setup.rig.lidar.mount_height_m),
-      odometry_(setup.slam, setup.rig, clock) {}
+      odometry_(setup.slam, setup.rig, clock),
+      doctor_(setup.rig) {}
 
 OdometryChunk OdometryRun::add(std::shared_ptr<const Chunk> chunk) {
   OdometryChunk result{.chunk = std::move(chunk), .scans = {}, .elapsed_ns = {}};
   for (const Measurement& measurement : result.chunk->measurements) {
     if (const auto* imu = std::get_if<ImuMeasurement>(&measurement)) {
       odometry_.add(imu->sample);
+      doctor_.add(imu->sample);
     } else if (const auto* wheels = std::get_if<WheelMeasurement>(&measurement)) {
       odometry_.add(wheels->sample);
+      doctor_.add(wheels->sample);
     } else if (const auto* camera = std::get_if<CameraMeasurement>(&measurement)) {
       odometry_.add(camera->frame);
       pictures_.add(camera->frame);
+      doctor_.add(camera->frame);
     } else if (const auto* lidar = std::get_if<LidarMeasurement>(&measurement)) {
       const int64_t start_ns = now_ns(clock_);
       result.scans.push_back(odometry_.add(lidar->scan));
       result.elapsed_ns.push_back(now_ns(clock_) - start_ns);
+      doctor_.add(lidar->scan, result.scans.back().report);
       if (result.scans.back().is_key && result.chunk->has_truth())
         remember_key(*lidar, result.chunk->scans[result.scans.size() - 1].T_world_base);
     }

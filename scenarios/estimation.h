@@ -8,6 +8,7 @@
 #include "scenarios/belief.h"
 #include "scenarios/contact_sheet.h"
 #include "scenarios/descriptor_example.h"
+#include "scenarios/health/doctor.h"
 #include "scenarios/oracles/loop_truth.h"
 #include "scenarios/sensing.h"
 #include "slam/loop/scan_context.h"
@@ -40,6 +41,8 @@ class OdometryRun {
 
   OdometryChunk add(std::shared_ptr<const Chunk> chunk);
   const ContactSheet& pictures() const { return pictures_; }
+  /// So far.
+  Health health(const SourceHealth& source) const { return doctor_.health(odometry_.health(), source); }
   /// Of the key scans, which are the same for all methods. Empty without truth.
   const std::vector<KeyScanTruth>& key_scan_truth() const { return key_scan_truth_; }
   const std::vector<ScanContext>& true_descriptors() const { return true_descriptors_; }
@@ -51,6 +54,7 @@ class OdometryRun {
   ScanContextConfig scan_context_;
   double mount_height_m_;
   Odometry odometry_;
+  SensorDoctor doctor_;
   ContactSheet pictures_;
   std::vector<KeyScanTruth> key_scan_truth_;
   std::vector<ScanContext> true_descriptors_;

@@ -206,7 +206,8 @@ FinishedRun EstimationRun::write_result(Lane& lane) {
   PendingFolder folder(run.folder);
   {
     StageTimer timer(&lane.clock, "score_and_write");
-    const RunRecord record = source_->record(*lane.estimation);
+    RunRecord record = source_->record(*lane.estimation);
+    record.health = odometry_->health(record.source_health);
     run.seed = record.seed.value_or(0);
     run.metrics = score_run(record);
     write_results(folder.path(), record, run.metrics);

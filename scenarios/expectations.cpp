@@ -51,7 +51,12 @@ const std::vector<std::string>& metric_names() {
                                                  "degeneracy.precision",
                                                  "degeneracy.recall",
                                                  "degeneracy.direction_error_deg_median",
-                                                 "restarts"};
+                                                 "restarts",
+                                                 "coverage",
+                                                 "health.scans_prior_only",
+                                                 "health.scans_unconverged",
+                                                 "health.lost_spans",
+                                                 "health.warnings"};
   return names;
 }
 

@@ -17,7 +17,7 @@ struct Bound {
   std::string text() const;        ///< "<= 0.05", ">= 1", "1 to 3"
 };
 
-/// Metrics by their names in metrics.json; those inside a group with a dot: loops.false.
+/// Metrics by their names in metrics.json; those inside a group with a dot: loops.false. A list counts as its length.
 using MetricBounds = std::map<std::string, Bound>;
 
 /// The `expect` section: by method name, or "all". A method's own bound replaces that of "all".

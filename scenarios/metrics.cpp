@@ -31,6 +31,7 @@ Json all_figures(const Metrics& m) {
           {"odometry_ate_rmse_m", number(m.odometry_ate_rmse_m)},
           {"vio_ate_rmse_m", number(m.vio_ate_rmse_m)},
           {"map_error_mean_m", number(m.map_error_mean_m)},
+          {"coverage", number(m.coverage)},
           {"descriptors",
            {{"count", m.descriptors.count},
             {"index_bytes", m.descriptors.index_bytes},
@@ -49,7 +50,8 @@ Json all_figures(const Metrics& m) {
            {{"precision", number(m.degeneracy.precision)},
             {"recall", number(m.degeneracy.recall)},
             {"direction_error_deg_median", number(m.degeneracy.direction_error_deg_median)}}},
-          {"restarts", m.restarts}};
+          {"restarts", m.restarts},
+          {"health", health_json(m.health, m.stamp_offset)}};
 }
 
 void erase(Json& json, std::initializer_list<const char*> keys) {
@@ -64,7 +66,7 @@ Json to_json(const Metrics& m) {
   erase(json["loops"], {"revisits", "recall", "aliases"});
   if (m.truth == Truth::trajectory) return json;
   erase(json, {"path_length_m", "ate_rmse_m", "ate_max_m", "rpe_10m_percent", "rpe_10m_deg", "end_error_m",
-               "odometry_ate_rmse_m", "vio_ate_rmse_m"});
+               "odometry_ate_rmse_m", "vio_ate_rmse_m", "coverage"});
   erase(json["loops"], {"true", "false", "precision"});
   return json;
 }
@@ -78,6 +80,7 @@ std::optional<double> find(const Json& json, const std::string& metric) {
     node = &node->at(key);
     begin = end + 1;
   }
+  if (node->is_array()) return static_cast<double>(node->size());
   return node->is_number() ? std::optional(node->get<double>()) : std::nullopt;
 }
 

@@ -296,6 +296,7 @@ RunRecord ReplayedRecording::record(const MappingRun& estimation) const {
                   {"rig.yaml", save_config(sheet_)},
                   {"recording.json", recording_json()}};
   record.stamp_offset = samples_->epoch();
+  record.source_health = source_health();
   record.duration_s = first_end_ ? seconds_between(*first_end_, last_end_) : 0;
   return record;
 }
@@ -306,6 +307,24 @@ fs::path ReplayedRecording::result_folder(Method method) const {
 
 std::string ReplayedRecording::made_by() const {
   return fingerprint();
+}
+
+// What the reader notes was set right or assumed, unless it asks.
+SourceHealth ReplayedRecording::source_health() const {
+  SourceHealth health;
+  std::map<std::string, int64_t>* const dropped[kSensors] = {&health.imu_dropped, &health.wheels_dropped,
+                                                             &health.lidar_dropped, &health.camera_dropped};
+  for (size_t sensor = 0; sensor < kSensors; ++sensor) {
+    const SampleCounts& c = samples_->counts(sensor);
+    for (const auto& [reason, count] : {std::pair("late", c.late), std::pair("duplicate", c.duplicates),
+                                        std::pair("stray", c.stray), std::pair("empty", c.empty)})
+      if (count > 0) (*dropped[sensor])[reason] = count;
+  }
+  for (const std::string& note : recording_->notes()) {
+    const bool doubtful = note.find('?') != note.npos || note.starts_with("damaged");
+    (doubtful ? health.warnings : health.repairs).push_back(note);
+  }
+  return health;
 }
 
 std::string ReplayedRecording::recording_json() const {

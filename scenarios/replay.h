@@ -67,6 +67,7 @@ class ReplayedRecording final : public MeasurementSource {
   void tell_notes();
   void note_gaps();
   void note_drops();
+  SourceHealth source_health() const;
   std::string recording_json() const;
 
   std::filesystem::path path_, out_;

@@ -48,6 +48,17 @@ void score_trajectories(const RunRecord& record, Metrics& m) {
   const std::span<const StampedPose> truth = record.truth_world_base;
   if (truth.empty()) return;
   const TrajectoryScore estimate = score(record.estimation.mapping().trajectory_map_base(), truth);
+  m.coverage = estimate.coverage;
+  if (estimate.coverage < kLeastCoverage)
+    m.health.warnings.push_back(
+        fmt::format("truth: only {:.0f} % of the scans have any: the errors tell of these alone",
+                    100 * estimate.coverage));
+  if (estimate.pairs < kLeastPairs) {
+    m.health.warnings.push_back(
+        fmt::format("truth: {} of the scans have any, and an alignment needs {}: no errors are given",
+                    estimate.pairs, kLeastPairs));
+    return;
+  }
   m.path_length_m = estimate.path_length_m;
   m.ate_rmse_m = estimate.ate_rmse_m;
   m.ate_max_m = estimate.ate_max_m;
@@ -77,6 +88,8 @@ Metrics score_run(const RunRecord& record) {
   m.seed = record.seed;
   m.truth = record.truth;
   m.failure = record.failure;
+  m.health = record.health;
+  m.stamp_offset = record.stamp_offset;
   m.duration_s = record.duration_s;
   m.scans = static_cast<int64_t>(record.estimation.reports().size());
   m.images = record.estimation.images();

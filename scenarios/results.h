@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "scenarios/estimation.h"
+#include "scenarios/health/health.h"
 #include "scenarios/metrics.h"
 #include "scenarios/oracles/map_error.h"
 #include "scenarios/wall_clock.h"
@@ -36,6 +37,8 @@ struct RunRecord {
   Duration stamp_offset{};  ///< added to the samples' stamps where stamps are written
   double duration_s = 0;
   std::string failure{};  ///< why the run ended early; empty: it did not
+  SourceHealth source_health{};
+  Health health{};  ///< of the sensors and the odometry, which all methods share
 };
 
 Metrics score_run(const RunRecord& record);

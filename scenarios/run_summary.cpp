@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 #include <vector>
 
 #include "scenarios/interrupt.h"
@@ -18,28 +19,22 @@ std::string number(const std::optional<double>& value, int decimals) {
 }
 
 Row header() {
-  return {"method", "seed",           "time s", "path m",     "ATE m", "max m",  "RPE %",  "RPE deg",
-          "end m",  "odometry ATE m", "map m",  "loops true", "false", "recall", "stored", "x real time"};
+  return {"method", "seed",    "time s", "path m",         "ATE m", "max m",
+          "RPE %",  "RPE deg", "end m",  "odometry ATE m", "map m", "loops true",
+          "false",  "recall",  "stored", "x real time",    "health"};
 }
 
 Row row(const FinishedRun& run) {
   const Metrics& m = run.metrics;
-  return {m.method,
-          m.seed ? fmt::format("{}", *m.seed) : "-",
-          number(m.duration_s, 1),
+  return {m.method, m.seed ? fmt::format("{}", *m.seed) : "-", number(m.duration_s, 1),
           m.truth == Truth::none ? "-" : number(m.path_length_m, 1),
-          number(m.ate_rmse_m, 3),
-          number(m.ate_max_m, 3),
-          number(m.rpe_10m_percent, 2),
-          number(m.rpe_10m_deg, 2),
-          number(m.end_error_m, 3),
-          number(m.odometry_ate_rmse_m, 3),
-          number(m.map_error_mean_m, 3),
+          // An error of what no LiDAR has seen must not look like one of this method.
+          number(m.ate_rmse_m, 3) + (m.ate_rmse_m && m.health.blind() ? " !" : ""), number(m.ate_max_m, 3),
+          number(m.rpe_10m_percent, 2), number(m.rpe_10m_deg, 2), number(m.end_error_m, 3),
+          number(m.odometry_ate_rmse_m, 3), number(m.map_error_mean_m, 3),
           m.truth == Truth::none ? "-" : fmt::format("{}", m.loops.true_loops),
-          m.truth == Truth::none ? "-" : fmt::format("{}", m.loops.false_loops),
-          number(m.loops.recall, 2),
-          fmt::format("{}", m.descriptors.count),
-          number(run.real_time_factor, 1)};
+          m.truth == Truth::none ? "-" : fmt::format("{}", m.loops.false_loops), number(m.loops.recall, 2),
+          fmt::format("{}", m.descriptors.count), number(run.real_time_factor, 1), m.health.verdict()};
 }
 
 std::string table(const std::vector<Row>& rows) {
@@ -66,6 +61,22 @@ std::string expectations_of(const FinishedRun& run) {
   return text;
 }
 
+// The methods of a seed share sensors and odometry: what is the same is told once.
+std::string healths_of(std::span<const FinishedRun> runs) {
+  std::string text;
+  std::set<std::string> told;
+  const bool several = std::any_of(runs.begin(), runs.end(), [&](const FinishedRun& run) {
+    return health_text(run.metrics.health) != health_text(runs.front().metrics.health);
+  });
+  for (const FinishedRun& run : runs) {
+    const std::string lines = health_text(run.metrics.health);
+    if (lines.empty() || !told.insert(lines).second) continue;
+    if (several) text += fmt::format("{} seed {}:\n", run.metrics.method, run.seed);
+    text += lines;
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string summary_text(std::span<const FinishedRun> runs) {
@@ -73,6 +84,7 @@ std::string summary_text(std::span<const FinishedRun> runs) {
   std::vector<Row> rows = {header()};
   for (const FinishedRun& run : runs) rows.push_back(row(run));
   std::string text = table(rows);
+  text += healths_of(runs);
   for (const FinishedRun& run : runs) text += expectations_of(run);
   for (const FinishedRun& run : runs)
     text += fmt::format("report: {}\n", (run.folder / "report.html").string());

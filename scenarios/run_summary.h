@@ -11,7 +11,7 @@
 
 namespace vsslam {
 
-/// A table of the main figures, the expectations with PASS or FAIL, and where the reports are.
+/// A table of the main figures, what is doubtful of the sensors, the expectations with PASS or FAIL, and where the reports are.
 std::string summary_text(std::span<const FinishedRun> runs);
 
 /// What was finished before something went wrong.

@@ -8,8 +8,9 @@
 namespace vsslam {
 
 bool FinishedRun::as_expected() const {
-  return metrics.failure.empty() && std::all_of(metrics.expectations.begin(), metrics.expectations.end(),
-                                                [](const ExpectationResult& e) { return e.pass; });
+  return metrics.failure.empty() && metrics.health.worthless.empty() &&
+         std::all_of(metrics.expectations.begin(), metrics.expectations.end(),
+                     [](const ExpectationResult& e) { return e.pass; });
 }
 
 struct Runner::Impl {

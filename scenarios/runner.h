@@ -29,7 +29,8 @@ struct FinishedRun {
   std::filesystem::path folder{};
   Metrics metrics{};
   double real_time_factor = 0;
-  bool as_expected() const;  ///< the drive ended well and every expectation is met
+  bool as_expected()
+      const;  ///< the drive ended well, the result is worth something, every expectation is met
 };
 
 class MeasurementSource;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -77,6 +78,27 @@ double path_length(std::span<const SE3> poses) {
   return length;
 }
 
+double coverage_of(std::span<const StampedPose> estimate, std::span<const StampPair> matches) {
+  constexpr double kTogether_s = 1.0;
+  size_t covered = matches.empty() ? 0 : 1;
+  for (size_t i = 1; i < matches.size(); ++i) {
+    const size_t before = matches[i - 1].estimate, at = matches[i].estimate;
+    if (at == before) continue;
+    covered += seconds_between(estimate[before].stamp, estimate[at].stamp) <= kTogether_s ? at - before : 1;
+  }
+  return estimate.empty() ? 0 : static_cast<double>(covered) / static_cast<double>(estimate.size());
+}
+
+/// Their extent across the line that fits them best is rounding.
+bool on_a_line(const std::vector<Vec3>& points) {
+  Vec3 mean = Vec3::Zero();
+  for (const Vec3& p : points) mean += p / static_cast<double>(points.size());
+  Mat3 scatter = Mat3::Zero();
+  for (const Vec3& p : points) scatter += (p - mean) * (p - mean).transpose();
+  const Vec3 extents = Eigen::SelfAdjointEigenSolver<Mat3>(scatter).eigenvalues();  // ascending
+  return extents[1] <= 1e-12 * extents[2];
+}
+
 }  // namespace
 
 std::vector<StampPair> associate(std::span<const StampedPose> estimate, std::span<const StampedPose> truth,
@@ -134,6 +156,7 @@ TrajectoryScore score(std::span<const StampedPose> estimate, std::span<const Sta
     throw InputError(fmt::format("{} and {} have no stamps within {} ms of each other", names.first,
                                  names.second, options.max_time_difference.ns / 1e6));
   result.pairs = static_cast<int>(result.matches.size());
+  result.coverage = coverage_of(estimate, result.matches);
 
   std::vector<SE3> matched_estimate, matched_truth;
   for (const auto& [i, j] : result.matches) {
@@ -151,6 +174,26 @@ TrajectoryScore score(std::span<const StampedPose> estimate, std::span<const Sta
   score_absolute(matched_estimate, matched_truth, result);
   score_relative(matched_estimate, matched_truth, options, result);
   return result;
+}
+
+std::string why_alignment_open(std::span<const StampedPose> estimate, std::span<const StampedPose> truth,
+                               const TrajectoryScore& scored) {
+  if (scored.pairs < kLeastPairs)
+    return fmt::format(
+        "{} of {} poses have truth at the same time, and an alignment needs {} that are not on a line",
+        scored.pairs, estimate.size(), kLeastPairs);
+  std::vector<Vec3> of_estimate, of_truth;
+  for (const auto& [i, j] : scored.matches) {
+    of_estimate.push_back(estimate[i].pose.translation);
+    of_truth.push_back(truth[j].pose.translation);
+  }
+  const auto open = [&](const char* which) {
+    return fmt::format(
+        "all {} positions of the {} lie on one line or at one point, which leaves the alignment open",
+        scored.pairs, which);
+  };
+  if (on_a_line(of_truth)) return open("truth");
+  return on_a_line(of_estimate) ? open("estimate") : "";
 }
 
 }  // namespace vsslam

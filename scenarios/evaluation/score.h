@@ -27,8 +27,16 @@ struct StampPair {
   size_t estimate, truth;
 };
 
+/// An alignment by positions needs so many.
+inline constexpr int kLeastPairs = 3;
+/// With less of the estimate compared, the figures tell of something else.
+inline constexpr double kLeastCoverage = 0.5;
+
 struct TrajectoryScore {
   int pairs = 0;  ///< associated poses
+  /// Share of the estimate's poses that are associated, or lie between associated ones at most a second apart: a truth
+  /// with one pose a second covers an estimate with ten.
+  double coverage = 0;
   double ate_rmse_m = 0, ate_mean_m = 0, ate_max_m = 0;
   /// RMSE over the pairs of the relative translation error, in percent of rpe_delta_m, and of the rotation
   /// angle. Absent if the path has no pair of that length.
@@ -59,5 +67,10 @@ std::vector<std::pair<size_t, size_t>> pairs_by_path(std::span<const Vec3> posit
 TrajectoryScore score(std::span<const StampedPose> estimate, std::span<const StampedPose> truth,
                       const ScoreOptions& options = {},
                       const std::pair<std::string, std::string>& names = {"the estimate", "the truth"});
+
+/// Why the associated positions leave the alignment open, so that an error after it says less than it seems to: fewer
+/// than three, or all on one line. Empty: they do not. Needed are estimate and truth as they were scored.
+std::string why_alignment_open(std::span<const StampedPose> estimate, std::span<const StampedPose> truth,
+                               const TrajectoryScore& scored);
 
 }  // namespace vsslam

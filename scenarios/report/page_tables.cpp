@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "core/errors.h"
+#include "scenarios/report/page_health.h"
 
 namespace vsslam {
 
@@ -40,7 +41,8 @@ const std::vector<Group>& groups() {
         {"/rpe_10m_deg", "RPE over 10 m, rotation", "°", 3, Better::low},
         {"/odometry_ate_rmse_m", "Odometry ATE RMSE", "m", 3, Better::low},
         {"/vio_ate_rmse_m", "VIO ATE RMSE", "m", 3, Better::low},
-        {"/map_error_mean_m", "Map to surface, mean", "m", 3, Better::low}}},
+        {"/map_error_mean_m", "Map to surface, mean", "m", 3, Better::low},
+        {"/coverage", "Scans with truth", "", 3, Better::high}}},
       {"Loops",
        {{"/loops/candidates", "Candidates", "", 0},
         {"/loops/accepted", "Accepted", "", 0},
@@ -63,7 +65,9 @@ const std::vector<Group>& groups() {
         {"/path_length_m", "Path length", "m", 1},
         {"/scans", "Scans", "", 0},
         {"/images", "Images", "", 0},
-        {"/restarts", "Restarts", "", 0, Better::low}}},
+        {"/restarts", "Restarts", "", 0, Better::low},
+        {"/health/scans_prior_only", "Scans without the LiDAR", "", 0, Better::low},
+        {"/health/scans_unconverged", "Scans not converged", "", 0, Better::low}}},
   };
   return kGroups;
 }
@@ -98,16 +102,25 @@ std::optional<double> best_of(const std::vector<std::optional<double>>& values, 
   return best;
 }
 
+const char* blind_mark(const StoredResult& result, const Figure& figure) {
+  return figure.pointer == std::string_view("/ate_rmse_m") && lidar_blind(result)
+             ? " <span class=\"chip bad\">!</span>"
+             : "";
+}
+
 std::string figure_row(std::span<const StoredResult> results, const Figure& figure) {
   std::vector<std::optional<double>> values;
   for (const StoredResult& result : results) values.push_back(number_at(*result.metrics, figure.pointer));
   if (std::none_of(values.begin(), values.end(), [](const auto& value) { return value.has_value(); }))
     return {};
-  const auto best = best_of(values, figure.better);
+  std::vector<std::optional<double>> comparable = values;
+  for (size_t i = 0; i < results.size(); ++i)
+    if (lidar_blind(results[i])) comparable[i].reset();
+  const auto best = best_of(comparable, figure.better);
   std::string row = fmt::format("<tr><th scope=\"row\">{}</th>", figure.label);
-  for (const auto& value : values)
-    row += fmt::format("<td{}>{}</td>", best && value == best ? " class=\"best\"" : "",
-                       number_html(value, figure.decimals));
+  for (size_t i = 0; i < results.size(); ++i)
+    row += fmt::format("<td{}>{}{}</td>", best && comparable[i] == best ? " class=\"best\"" : "",
+                       number_html(values[i], figure.decimals), blind_mark(results[i], figure));
   return row + fmt::format("<td class=\"unit\">{}</td></tr>\n", figure.unit);
 }
 
@@ -195,9 +208,9 @@ std::string loop_row(const CsvTable& loops, size_t row) {
   return html + "</tr>\n";
 }
 
-std::string tile(const Figure& figure, double value) {
-  return fmt::format("<div class=\"tile\"><dt>{}</dt><dd>{}<span class=\"unit\">{}</span></dd></div>\n",
-                     figure.label, number_html(value, figure.decimals), figure.unit);
+std::string tile(const Figure& figure, double value, const char* mark = "") {
+  return fmt::format("<div class=\"tile\"><dt>{}</dt><dd>{}<span class=\"unit\">{}</span>{}</dd></div>\n",
+                     figure.label, number_html(value, figure.decimals), figure.unit, mark);
 }
 
 std::string timing_tiles(const json& timing) {
@@ -266,7 +279,8 @@ std::string headline_html(const StoredResult& result) {
       {"/loops/precision", "Loop precision", "", 2}, {"/descriptors/count", "Descriptors", "", 0}};
   std::string tiles;
   for (const Figure& figure : kTiles)
-    if (const auto value = number_at(*result.metrics, figure.pointer)) tiles += tile(figure, *value);
+    if (const auto value = number_at(*result.metrics, figure.pointer))
+      tiles += tile(figure, *value, blind_mark(result, figure));
   return tiles.empty() ? tiles : "<dl class=\"tiles\">\n" + tiles + "</dl>\n";
 }
 

@@ -12,6 +12,7 @@
 #include "report_page.h"
 #include "scenarios/report/base64.h"
 #include "scenarios/report/page_data.h"
+#include "scenarios/report/page_health.h"
 #include "scenarios/report/page_tables.h"
 #include "scenarios/report/page_template.h"
 #include "scenarios/report/stored_result.h"
@@ -42,10 +43,12 @@ std::string camera_html(const StoredResult& result) {
 }
 
 constexpr const char* kAligned =
-    "Estimate and odometry are each aligned to the truth (SE(3), least squares over all poses). Loops are drawn "
+    "Estimate and odometry are each aligned to the truth (SE(3), least squares over all poses). Loops are "
+    "drawn "
     "between true places: a\ntrue one is short, a false one joins places that are apart.";
 constexpr const char* kNotAligned =
-    "There is no truth: estimate and odometry begin at the same pose, and loops are drawn between estimated places.";
+    "There is no truth: estimate and odometry begin at the same pose, and loops are drawn between estimated "
+    "places.";
 
 std::string page(std::span<const StoredResult> results) {
   const bool alone = results.size() == 1;
@@ -55,21 +58,23 @@ std::string page(std::span<const StoredResult> results) {
       k_page_html,
       {{"title", escape_html(title_of(results))},
        {"style", std::string(k_page_css)},
-       {"verdict", verdict_html(results)},
+       {"verdict", verdict_html(results) + health_verdict_html(results)},
        {"headline", alone ? headline_html(results[0]) : ""},
        {"figures_above", alone ? "" : figures(results)},
        {"figures_below", alone ? figures(results) : ""},
        {"trajectories_note", truth ? kAligned : kNotAligned},
        {"error_hidden", truth ? "" : " hidden"},
+       {"health",
+        section_html("health", "Health", "How the sensors and the odometry fared, without any truth.",
+                     health_html(results))},
        {"camera", section_html("camera", "What the camera saw",
                                "Images spread over the run, half their size, row by row.",
                                alone ? camera_html(results[0]) : "")},
        {"loops",
-        section_html(
-            "loops", "Loop candidates",
-            fmt::format("Every candidate, accepted or not{}. Point at a row to see it on the map.",
-                        truth ? ", judged against exact truth" : ""),
-            loops_html(results))},
+        section_html("loops", "Loop candidates",
+                     fmt::format("Every candidate, accepted or not{}. Point at a row to see it on the map.",
+                                 truth ? ", judged against exact truth" : ""),
+                     loops_html(results))},
        {"timing",
         section_html("timing", "Timing", "Wall clock; the only part of this page that differs between runs.",
                      timing_html(results))},

@@ -9,6 +9,7 @@
 
 #include "core/errors.h"
 #include "core/files.h"
+#include "scenarios/health/health.h"
 
 namespace vsslam {
 
@@ -40,15 +41,22 @@ std::vector<std::string> failed_expectations(const json& metrics) {
   return failed;
 }
 
+std::optional<double> figure_of(const json& value) {
+  if (value.is_array()) return static_cast<double>(value.size());
+  return value.is_number() ? std::optional(value.get<double>()) : std::nullopt;
+}
+
 void read_result(RunFigures& figures) {
   const json metrics = read_json(figures.run.folder / "metrics.json");
   figures.present = true;
   if (metrics.contains("failure") && metrics["failure"].is_string()) figures.failure = metrics["failure"];
   for (const std::string& name : metric_names()) {
     const json::json_pointer at = pointer_to(name);
-    const bool number = metrics.contains(at) && metrics.at(at).is_number();
-    figures.values.push_back(number ? std::optional(metrics.at(at).get<double>()) : std::nullopt);
+    figures.values.push_back(metrics.contains(at) ? figure_of(metrics.at(at)) : std::nullopt);
   }
+  const json health = metrics.value("health", json::object());
+  if (health.contains("worthless") && health["worthless"].is_string())
+    figures.worthless = health["worthless"];
   figures.failed_expectations = failed_expectations(metrics);
   if (std::filesystem::exists(figures.run.folder / "timing.json"))
     figures.made_by = read_json(figures.run.folder / "timing.json").value("made_by", "");
@@ -86,6 +94,11 @@ std::optional<double> RunFigures::value(const std::string& metric) const {
   const auto& names = metric_names();
   const auto at = std::find(names.begin(), names.end(), metric) - names.begin();
   return at < static_cast<std::ptrdiff_t>(values.size()) ? values[static_cast<size_t>(at)] : std::nullopt;
+}
+
+bool RunFigures::blind() const {
+  return !worthless.empty() ||
+         value("health.scans_prior_only").value_or(0) > kBlindShare * value("scans").value_or(0);
 }
 
 SuiteFigures::SuiteFigures(const SuitePlan& plan, std::span<const SuiteFailure> failures, bool any_build)
@@ -140,6 +153,12 @@ size_t SuiteFigures::present() const {
       std::count_if(runs_.begin(), runs_.end(), [](const RunFigures& r) { return r.present; }));
 }
 
+bool SuiteFigures::blind(size_t scenario, Method method) const {
+  return std::any_of(runs_.begin(), runs_.end(), [&](const RunFigures& r) {
+    return r.run.scenario == scenario && r.run.method == method && r.blind();
+  });
+}
+
 size_t SuiteFigures::builds() const {
   std::set<std::string> builds;
   for (const RunFigures& r : runs_)
@@ -151,7 +170,8 @@ bool SuiteFigures::as_expected() const {
   const std::vector<Expected> suite = expected();
   return std::all_of(runs_.begin(), runs_.end(),
                      [](const RunFigures& r) {
-                       return r.present && r.failure.empty() && r.failed_expectations.empty();
+                       return r.present && r.failure.empty() && r.worthless.empty() &&
+                              r.failed_expectations.empty();
                      }) &&
          std::all_of(suite.begin(), suite.end(), [](const Expected& e) { return e.result.pass; });
 }

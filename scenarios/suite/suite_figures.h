@@ -25,10 +25,13 @@ struct RunFigures {
   bool present = false;                            ///< there is a result
   std::string failure{};                           ///< why there is none, or why its drive ended early
   std::vector<std::optional<double>> values{};     ///< by metric_names(); empty without a result
+  std::string worthless{};                         ///< why the result is worth nothing; empty: it is
   std::vector<std::string> failed_expectations{};  ///< of its scenario, as "ate_rmse_m = 0.3 (<= 0.05)"
   std::string made_by{};                           ///< fingerprint of the build
 
   std::optional<double> value(const std::string& metric) const;
+  /// See Health::blind.
+  bool blind() const;
 };
 
 class SuiteFigures {
@@ -52,7 +55,9 @@ class SuiteFigures {
 
   size_t present() const;  ///< runs with a result
   size_t builds() const;   ///< different builds that made them
-  /// Every run has a result whose drive ended well, and every expectation is met, the suite's and the scenarios'.
+  /// Whether the LiDAR of some run of it was.
+  bool blind(size_t scenario, Method method) const;
+  /// Every run has a result that is worth something, whose drive ended well, and every expectation is met, the suite's and the scenarios'.
   bool as_expected() const;
 
  private:

@@ -81,7 +81,11 @@ std::string failures_markdown(const SuiteFigures& figures) {
     if (!r.failure.empty())
       text += fmt::format("* {} {} seed {}: {}\n", figures.plan().scenarios[r.run.scenario].name,
                           method_name(r.run.method), r.run.seed, r.failure);
-  return text.empty() ? text : "## Runs that failed or are missing\n\n" + text + "\n";
+  for (const RunFigures& r : figures.runs())
+    if (!r.worthless.empty())
+      text += fmt::format("* {} {} seed {}: worthless: {}\n", figures.plan().scenarios[r.run.scenario].name,
+                          method_name(r.run.method), r.run.seed, r.worthless);
+  return text.empty() ? text : "## Runs that failed, are missing or worthless\n\n" + text + "\n";
 }
 
 std::string losses_markdown(const SuiteFigures& figures) {

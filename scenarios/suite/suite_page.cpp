@@ -54,6 +54,7 @@ std::vector<std::string> problems(const SuiteFigures& figures) {
     const std::string name = fmt::format("{} {} seed {}", figures.plan().scenarios[r.run.scenario].name,
                                          method_name(r.run.method), r.run.seed);
     if (!r.failure.empty()) list.push_back(fmt::format("{}: {}", name, r.failure));
+    if (!r.worthless.empty()) list.push_back(fmt::format("{}: worthless: {}", name, r.worthless));
     for (const std::string& failed : r.failed_expectations)
       list.push_back(fmt::format("{}: {}", name, failed));
   }
@@ -169,8 +170,9 @@ std::string suite_page(const SuiteFigures& figures, const std::vector<MethodOffs
                          ? ""
                          : fmt::format("<p class=\"note\">The small figure below ours: {}.</p>",
                                        escape_html(suite.reference.source))},
-       {"problems", section_html("problems", "Runs that failed, are missing or miss an expectation", "",
-                                 bad.empty() ? "" : list_html(bad))},
+       {"problems",
+        section_html("problems", "Runs that failed, are missing, worthless or miss an expectation", "",
+                     bad.empty() ? "" : list_html(bad))},
        {"behind", section_html("behind", "Where " + escape_html(suite.focus) + " is behind",
                                "By the means over seeds, to the digits shown.",
                                !has_focus(figures) ? ""
@@ -179,7 +181,7 @@ std::string suite_page(const SuiteFigures& figures, const std::vector<MethodOffs
        {"error", sections["error"]},
        {"memory", sections["memory"] + sections["database"]},
        {"loops", sections["loops"] + sections["recall"] + sections["precision"]},
-       {"sequences", sections["sequences"]},
+       {"sequences", sections["health"] + sections["sequences"]},
        {"offsets_table", offsets_table(offsets)},
        {"expectations",
         section_html("expectations", "Expectations of the suite", "", expectations_html(figures))},

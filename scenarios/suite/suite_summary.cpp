@@ -71,6 +71,10 @@ std::string suite_text(const SuiteFigures& figures) {
     const std::string name = fmt::format("{} {} seed {}", plan.scenarios[r.run.scenario].name,
                                          method_name(r.run.method), r.run.seed);
     if (!r.failure.empty()) text += fmt::format("FAIL  {}  {}\n", r.failure, name);
+    if (!r.worthless.empty()) text += fmt::format("FAIL  worthless: {}  {}\n", r.worthless, name);
+    if (const double warnings = r.value("health.warnings").value_or(0); warnings > 0)
+      text += fmt::format("WARN  {} warning{} in its metrics.json  {}\n", warnings, warnings > 1 ? "s" : "",
+                          name);
     for (const std::string& failed : r.failed_expectations)
       text += fmt::format("FAIL  {}  {}\n", failed, name);
   }
@@ -87,6 +91,12 @@ std::string suite_json(const SuiteFigures& figures) {
                           {"method", method_name(r.run.method)},
                           {"seed", r.run.seed},
                           {"why", r.failure}});
+  for (const RunFigures& r : figures.runs())
+    if (!r.worthless.empty())
+      failures.push_back({{"scenario", plan.scenarios[r.run.scenario].name},
+                          {"method", method_name(r.run.method)},
+                          {"seed", r.run.seed},
+                          {"why", "worthless: " + r.worthless}});
   for (const SuiteFigures::Expected& e : figures.expected())
     expectations.push_back({{"method", method_name(e.method)},
                             {"metric", e.result.metric},

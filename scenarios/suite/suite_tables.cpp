@@ -83,7 +83,7 @@ void mark_best(const SuiteFigures& figures, SuiteTable& table, Better better,
     const auto is_best = [&](const TableCell& cell) { return !best_text.empty() && cell.value == best_text; };
     std::vector<TableCell>& cells = table.rows[i].cells;
     if (std::all_of(cells.begin(), cells.end(), is_best)) continue;  // nothing stands out
-    for (TableCell& cell : cells) cell.best = is_best(cell);
+    for (TableCell& cell : cells) cell.best = is_best(cell) && !cell.value.ends_with('!');
   }
 }
 
@@ -111,7 +111,9 @@ SuiteTable error_table(const SuiteFigures& figures) {
   table = by_method(
       figures, std::move(table),
       [&](size_t scenario, Method method) {
-        return one(figures, scenario, method, {metric(scenario), metres_text});
+        TableCell cell = one(figures, scenario, method, {metric(scenario), metres_text});
+        if (!cell.value.empty() && figures.blind(scenario, method)) cell.value += " !";
+        return cell;
       },
       [](Method) { return true; });
   mark_best(figures, table, Better::low, metric);
@@ -171,6 +173,23 @@ SuiteTable share_table(const SuiteFigures& figures, SuiteTable table, const std:
       [&](Method method) { return closes(figures, method); });
   mark_best(figures, table, Better::high, [&](size_t) { return metric; });
   return table;
+}
+
+SuiteTable health_table(const SuiteFigures& figures) {
+  return by_method(
+      figures,
+      {"health",
+       "Scans in which the LiDAR gave nothing / warnings",
+       "There the prior alone is the pose; an error is marked with ! where that is more than one scan in "
+       "twenty, or the "
+       "result is worthless. The warnings stand in metrics.json and on the page of the run.",
+       {},
+       {}},
+      [&](size_t scenario, Method method) {
+        return two(figures, scenario, method, {"health.scans_prior_only", count_text},
+                   {"health.warnings", count_text});
+      },
+      [](Method) { return true; });
 }
 
 SuiteTable sequence_table(const SuiteFigures& figures) {
@@ -247,6 +266,7 @@ std::vector<SuiteTable> suite_tables(const SuiteFigures& figures) {
   tables.push_back(
       share_table(figures, {"precision", "Precision of loops", "True edges of all accepted ones.", {}, {}},
                   "loops.precision"));
+  tables.push_back(health_table(figures));
   tables.push_back(sequence_table(figures));
   std::erase_if(tables, [](const SuiteTable& table) { return table.columns.empty(); });
   return tables;

@@ -10,7 +10,7 @@
 namespace vsslam {
 
 struct TableCell {
-  std::string value;      ///< mean, or two of them with a slash between
+  std::string value;      ///< mean, or two of them with a slash between; " !" after one that is worthless
   std::string deviation;  ///< empty: a single seed, or none
   std::string reference;  ///< empty: the publication has none
   bool best = false;      ///< of its row
@@ -27,7 +27,7 @@ struct SuiteTable {
   std::vector<Row> rows;
 };
 
-/// Errors, stored descriptors, bytes, loops, precision, recall, and what the sequences are.
+/// Errors, stored descriptors, bytes, loops, precision, recall, health, and what the sequences are.
 std::vector<SuiteTable> suite_tables(const SuiteFigures& figures);
 
 /// Whether the method in focus is among those of the suite.

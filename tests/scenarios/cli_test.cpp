@@ -109,7 +109,8 @@ TEST(Cli, EvaluatePrintsTheContract) {
   EXPECT_NEAR(json["ate_max_m"].get<double>(), 0.5, 1e-12);
   EXPECT_NEAR(json["ate_mean_m"].get<double>(), 0.5, 1e-12);
   EXPECT_EQ(json["pairs"], 31);
-  EXPECT_EQ(json.size(), 6u);
+  EXPECT_EQ(json["coverage"], 1.0);
+  EXPECT_EQ(json.size(), 7u);
 }
 
 TEST(Cli, OptimizePrintsTheContract) {

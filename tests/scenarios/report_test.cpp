@@ -252,6 +252,34 @@ TEST(Report, IsOneSelfContainedPage) {
   EXPECT_THAT(page, HasSubstr("fitness &lt;0.3&gt;"));
 }
 
+// Names come from files, so they are escaped; results from before there was health have no panel.
+TEST(Report, TellsOfTheHealthOfTheSensors) {
+  const fs::path folder = make_result("health");
+  EXPECT_THAT(report_of(folder), Not(HasSubstr("id=\"health\"")));
+  auto metrics = nlohmann::json::parse(read_file(folder / "metrics.json"));
+  metrics["health"] = {
+      {"sensors",
+       {{"imu", {{"used", 15000}, {"dropped", {{"late", 3}}}, {"rate_hz", 100.0}, {"gyro_scale", 57.3}}},
+        {"lidar", {{"used", 1500}, {"dropped", nlohmann::json::object()}, {"share_of_time", 0.5}}}}},
+      {"scans_prior_only", 900},
+      {"scans_unconverged", 2},
+      {"lost_spans", {{{"begin_s", 3.0}, {"end_s", 4.5}, {"scans", 16}, {"why", "too few <planes>"}}}},
+      {"repairs", {"imu: in <g>"}},
+      {"warnings", {"imu: in degrees?"}},
+      {"worthless", nullptr}};
+  write_file(folder / "metrics.json", metrics.dump());
+  EXPECT_THAT(report_of(folder),
+              AllOf(HasSubstr("<section id=\"health\">"), HasSubstr("imu: in degrees?"),
+                    HasSubstr("imu: in &lt;g&gt;"), HasSubstr("too few &lt;planes&gt;"),
+                    HasSubstr("3 <small>late 3</small>"), HasSubstr("gyroscope by LiDAR 57.300"),
+                    HasSubstr("1 warning</span>"), HasSubstr("50 %")));
+  metrics["health"]["worthless"] = "the LiDAR gave nothing";
+  write_file(folder / "metrics.json", metrics.dump());
+  EXPECT_THAT(report_of(folder),
+              HasSubstr("<span class=\"chip bad\">worthless</span> the LiDAR gave nothing"));
+  EXPECT_THAT(report_of(folder), HasSubstr("<td>0.180 <span class=\"chip bad\">!</span></td>"));
+}
+
 TEST(Report, DrawsTheErrorThatTheScoreFinds) {
   const fs::path folder = make_result("errors");
   const nlohmann::json run = data_of(report_of(folder))["runs"][0];

@@ -73,6 +73,28 @@ TEST_F(SuiteFiguresTest, MeansAreOverSeedsAndOverRuns) {
   EXPECT_EQ(figures.over_seeds(0, Method::sc_lvi_sam, "ate_rmse_m"), std::nullopt);
 }
 
+TEST_F(SuiteFiguresTest, AResultOfABlindLidarIsMarkedAndNotAsExpected) {
+  const SuitePlan plan = plan_with("");
+  write_all(plan);
+  const PlannedRun run = plan.runs().front();
+  Metrics bad = metrics(plan, run, 0.001);
+  bad.scans = 100;
+  bad.health.odometry.scans = 100;
+  bad.health.odometry.scans_prior_only = 60;
+  bad.health.warnings = {"a", "b"};
+  bad.health.worthless = "the LiDAR gave nothing";
+  fake_result(plan, run, bad);
+  const SuiteFigures figures(plan, {});
+  EXPECT_FALSE(figures.as_expected());
+  EXPECT_TRUE(figures.blind(run.scenario, run.method));
+  EXPECT_EQ(figures.runs().front().value("health.warnings"), 2.0);
+  const SuiteTable errors = suite_tables(figures).front();
+  EXPECT_THAT(errors.rows[0].cells[0].value, HasSubstr(" !"));
+  EXPECT_FALSE(errors.rows[0].cells[0].best);
+  EXPECT_THAT(errors.rows[1].cells[0].value, Not(HasSubstr("!")));
+  EXPECT_THAT(tables_markdown(figures), HasSubstr("worthless: the LiDAR gave nothing"));
+}
+
 TEST_F(SuiteFiguresTest, ExpectationsAreOfTheMean) {
   const SuitePlan plan = plan_with(
       "expect: {vs-slam: {ate_rmse_m: {max: 0.0551}, loops.recall: {min: 0.6}}, "
