@@ -82,9 +82,10 @@ struct Odometry::Impl {
   Prediction predict(const LidarScan& scan, const MotionPath& path, const Mat6& covariance) const;
   Prediction predict(const LidarScan& scan);
   ScanView view(const LidarScan& scan, const MotionPath& motion);
-  Registration align(const ScanView& view, const Prediction& prediction, Time stamp);
-  bool settle_motion(const LidarScan& scan, Prediction& prediction, ScanView& view, Registration& registration);
-  void judge_prior(const LidarScan& scan, const Prediction& prediction, const SE3& T_odom_base, const Mat6& known);
+  Registration align(const ScanView& view, const Prediction& prediction);
+  void settle_motion(const LidarScan& scan, const Prediction& prediction, ScanView& view,
+                     Registration& registration);
+  void judge_prior(const LidarScan& scan, const SE3& T_odom_base, const Mat6& known);
   void restart_prior(Time stamp);
   void correct_prior(Time stamp, const SE3& T_odom_base, const Mat6& covariance, const Registration& registration);
   std::vector<Feature> features(const char* stage, const Cloud& points_lidar, std::optional<RingOrder>& order,
@@ -101,13 +102,13 @@ OdometryScan Odometry::Impl::add(const LidarScan& scan) {
   // 2 undistort: all points to the scan's stamp; 3 features: planar points, thinned
   ScanView seen = view(scan, prediction.motion);
   // 4 register: point to plane against the local map, weighed against the prior
-  Registration registration = align(seen, prediction, scan.stamp);
+  Registration registration = align(seen, prediction);
   // ... and again if the robot moved otherwise than the prior said, which the points were undistorted by
   settle_motion(scan, prediction, seen, registration);
   const SE3 T_odom_base = registration.T_odom_lidar * rig.lidar.T_base_lidar.inverse();
   const Mat6 covariance = moved_covariance(registration.covariance, rig.lidar.T_base_lidar.inverse());
   // 5 what the LiDAR has seen tells what the prior is worth, and corrects its biases and velocity
-  if (!registration.used_prior_only) judge_prior(scan, prediction, T_odom_base, covariance);
+  if (!registration.used_prior_only) judge_prior(scan, T_odom_base, covariance);
   correct_prior(scan.stamp, T_odom_base, covariance, registration);
   prior->add_scan(scan.stamp, seen.points_lidar, T_odom_base);
   last_odom_base = StampedPose{scan.stamp, T_odom_base};
@@ -185,7 +186,7 @@ ScanView Odometry::Impl::view(const LidarScan& scan, const MotionPath& motion) {
   return seen;
 }
 
-Registration Odometry::Impl::align(const ScanView& seen, const Prediction& prediction, Time) {
+Registration Odometry::Impl::align(const ScanView& seen, const Prediction& prediction) {
   const StageTimer timer(clock, "register");
   const PosePrior around{prediction.T_odom_base * rig.lidar.T_base_lidar,
                          moved_covariance(prediction.covariance, rig.lidar.T_base_lidar)};
@@ -197,43 +198,42 @@ Registration Odometry::Impl::align(const ScanView& seen, const Prediction& predi
   return first;
 }
 
-// A scan that was undistorted by a wrong motion is bent, and so registered a little off; what it shows of the motion is
-// nearer to the truth. Repeated until the two agree. The first scan of all, taken when nothing was known of the motion,
-// is set right together with the second. (As in MOLA: the twist is estimated with the pose.)
-bool Odometry::Impl::settle_motion(const LidarScan& scan, Prediction& prediction, ScanView& seen,
+// A scan that was undistorted by a wrong motion is bent, and so registered a little off; where it was registered all the
+// same tells more of the motion than the prior knew. By what the prior missed since the last scan, at a steady rate, it
+// misses during this one. Repeated until the two agree. The first scan of all, taken when nothing was known of the
+// motion, is set right together with the second. (As in MOLA, which estimates the twist with the pose.)
+void Odometry::Impl::settle_motion(const LidarScan& scan, const Prediction& prediction, ScanView& seen,
                                    Registration& registration) {
   constexpr double kBent_m = 0.05, kBent_rad = 0.01;  // over a scan: what features and gates bear without notice
   constexpr int kRounds = 4;
   const std::optional<LidarScan> first = std::exchange(first_scan, std::nullopt);
-  if (!last_odom_base) {
-    if (rolls(scan)) first_scan = scan;
-    return false;
-  }
-  if (registration.used_prior_only || !rolls(scan)) return false;
+  if (!last_odom_base && rolls(scan)) first_scan = scan;
+  if (!last_odom_base || !rolls(scan)) return;
+  const SE3 T_lidar_base = rig.lidar.T_base_lidar.inverse();
   const double dt_s = seconds_between(last_odom_base->stamp, scan.stamp);
-  bool settled = false;
-  for (int round = 0; round < kRounds; ++round) {
-    const SE3 T_odom_base = registration.T_odom_lidar * rig.lidar.T_base_lidar.inverse();
-    const Vec6 twist = (last_odom_base->pose.inverse() * T_odom_base).log() / dt_s;
-    const MotionPath shown = steady_motion(twist, scan.stamp, scan.end);
-    const SE3 difference = prediction.motion.at(scan.end).inverse() * shown.end_pose();
-    if (difference.translation.norm() < kBent_m && difference.angle() < kBent_rad) break;
-    prediction.motion = shown;
+  Vec6 corrected = Vec6::Zero();  // twist beside the prior's
+  for (int round = 0; round < kRounds && !registration.used_prior_only; ++round) {
+    const SE3 T_odom_base = registration.T_odom_lidar * T_lidar_base;
+    const Vec6 missed = (prediction.T_odom_base.inverse() * T_odom_base).log() / dt_s;
+    const Vec6 change = (missed - corrected) * seconds_between(scan.stamp, scan.end);
+    if (change.tail<3>().norm() < kBent_m && change.head<3>().norm() < kBent_rad) return;
+    corrected = missed;
     if (first) {
+      const Vec6 twist = (last_odom_base->pose.inverse() * T_odom_base).log() / dt_s;
       ScanView again = view(*first, steady_motion(twist, first->stamp, first->end));
-      lidar.replace_first_key(features("features_of_key", again.points_lidar, again.order, config.odometry.map_voxel_m),
-                              last_odom_base->pose, rig.lidar.T_base_lidar);
+      lidar.replace_first_key(
+          features("features_of_key", again.points_lidar, again.order, config.odometry.map_voxel_m),
+          last_odom_base->pose, rig.lidar.T_base_lidar);
     }
-    seen = view(scan, prediction.motion);
-    registration = align(seen, prediction, scan.stamp);
-    settled = true;
-    if (registration.used_prior_only) break;
+    MotionPath motion(scan.stamp);
+    for (const StampedPose& knot : prediction.motion.knots())
+      motion.append(knot.stamp, knot.pose * SE3::exp(corrected * seconds_between(scan.stamp, knot.stamp)));
+    seen = view(scan, motion);
+    registration = align(seen, prediction);
   }
-  return settled;
 }
 
-void Odometry::Impl::judge_prior(const LidarScan& scan, const Prediction& prediction, const SE3& T_odom_base,
-                                 const Mat6& known) {
+void Odometry::Impl::judge_prior(const LidarScan& scan, const SE3& T_odom_base, const Mat6& known) {
   if (!last_odom_base) return;
   const Time last = last_odom_base->stamp;
   const auto step_from = [&](const SE3& predicted) { return Vec6((predicted.inverse() * T_odom_base).log()); };
@@ -247,7 +247,6 @@ void Odometry::Impl::judge_prior(const LidarScan& scan, const Prediction& predic
     health.warnings.push_back(fmt::format(
         "prior: from {:.1f} s on it contradicts the LiDAR, and is not believed", scan.stamp.seconds()));
   if (imu_units.compare(last, scan.stamp, last_odom_base->pose.inverse() * T_odom_base)) restart_prior(last);
-  (void)prediction;
 }
 
 // What it had learnt came from samples in the wrong unit.

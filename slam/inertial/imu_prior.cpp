@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <cmath>
 
 #include "slam/inertial/pose_covariance.h"
 
@@ -156,6 +157,41 @@ void ImuPrior::restart(const OdometryFix& fix, double dt_s) {
   state_.P.diagonal().tail<3>().setConstant(square(config_.accel_bias_sigma_mps2));
 }
 
+// Quiet, and not known to move: at constant speed an IMU is as quiet.
+bool ImuPrior::stands(Time from, Time to) const {
+  constexpr double kSpeed_mps = 0.05;
+  if (state_.v_odom.norm() > kSpeed_mps) return false;
+  Vec3 gyro_low = Vec3::Constant(1e9), gyro_high = -gyro_low, accel_low = gyro_low, accel_high = gyro_high;
+  int count = 0;
+  for (const ImuSample& sample : imu_.samples()) {
+    if (sample.stamp < from || sample.stamp > to) continue;
+    gyro_low = gyro_low.cwiseMin(sample.gyro_radps);
+    gyro_high = gyro_high.cwiseMax(sample.gyro_radps);
+    accel_low = accel_low.cwiseMin(sample.accel_mps2);
+    accel_high = accel_high.cwiseMax(sample.accel_mps2);
+    ++count;
+  }
+  const double noise_gyro = sheet_.gyro_noise_radps_rthz * std::sqrt(sheet_.rate_hz),
+               noise_accel = sheet_.accel_noise_mps2_rthz * std::sqrt(sheet_.rate_hz);
+  return count >= 3 && (gyro_high - gyro_low).norm() < 2 * config_.rest_gyro_radps + noise_gyro &&
+         (accel_high - accel_low).norm() < 2 * config_.rest_accel_mps2 + noise_accel;
+}
+
+// Velocity zero, as measured. The pose is the registration's and stays (a Schmidt update).
+void ImuPrior::stand_still() {
+  constexpr double kSigma_mps = 2e-3;
+  const Mat3 S = state_.P.block<3, 3>(6, 6) + kSigma_mps * kSigma_mps * Mat3::Identity();
+  Eigen::Matrix<double, 15, 3> K = S.ldlt().solve(state_.P.middleRows<3>(6)).transpose();
+  K.topRows<6>().setZero();
+  const Eigen::Matrix<double, 15, 1> change = -K * state_.v_odom;
+  Mat15 rest = Mat15::Identity();
+  rest.middleCols<3>(6) -= K;
+  state_.P = rest * state_.P * rest.transpose() + kSigma_mps * kSigma_mps * K * K.transpose();
+  state_.v_odom += change.segment<3>(6);
+  state_.bias.gyro_radps += change.segment<3>(9);
+  state_.bias.accel_mps2 += change.tail<3>();
+}
+
 void ImuPrior::correct(const OdometryFix& fix) {
   const auto last = fixes_.last();
   fixes_.add(fix);
@@ -176,6 +212,7 @@ void ImuPrior::correct(const OdometryFix& fix) {
   }
   state_.T_odom_imu = T_odom_imu;
   if (last && !(state_.v_odom.norm() < config_.max_speed_mps)) restart(fix, 1);
+  if (last && stands(last->stamp, fix.stamp)) stand_still();
   imu_.forget_before(fix.stamp);
 }
 

@@ -33,6 +33,8 @@ class ImuPrior : public MotionPrior {
   /// From `begin`, the stamp of the state. Appends the motion to `path` if given. Nothing if samples are missing.
   std::optional<State> predict(Time begin, Time end, MotionPath* path) const;
   void restart(const OdometryFix& fix, double dt_s);
+  bool stands(Time from, Time to) const;
+  void stand_still();
 
   InertialConfig config_;
   ImuCalibration sheet_;  // its noise as believed

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "slam/lidar/scattered_order.h"
 #include "slam/lidar/voxel_hash.h"
 
 namespace vsslam {
@@ -121,18 +122,19 @@ void for_each_planar(RingOrder& order, double range_sigma_m, const FeatureConfig
       order, static_cast<float>(config.planar_threshold_m.value_or(kPlanarSigmas * range_sigma_m)),
       static_cast<float>(std::sin(config.parallel_beam_deg * std::numbers::pi / 180))};
   const Windows windows(order, range_sigma_m, config);
-  for (size_t ring = 0; ring + 1 < order.begin.size(); ++ring) {
-    const size_t begin = order.begin[ring], end = order.begin[ring + 1];
-    mark_shadow_edges(order, begin, end, config);
-    Feature feature;
-    feature.ring = static_cast<uint16_t>(ring);
-    for (size_t i = begin; i < end; ++i) {
-      if (order.shadowed[i] || order.range_m[i] < config.min_range_m) continue;
-      const auto [half, short_half] = windows.at(i);
-      if (skip(i, half, short_half, begin, end)) continue;
-      if (straight(i, half, begin, end, feature) || straight(i, short_half, begin, end, feature))
-        keep(feature);
-    }
+  for (size_t ring = 0; ring < order.rings(); ++ring)
+    mark_shadow_edges(order, order.begin[ring], order.begin[ring + 1], config);
+  const size_t n = order.index.size();
+  ScatteredOrder places(n);
+  Feature feature;
+  for (size_t k = 0; k < n; ++k) {
+    const size_t i = places.next();
+    if (order.shadowed[i] || order.range_m[i] < config.min_range_m) continue;
+    feature.ring = order.ring[i];
+    const size_t begin = order.begin[feature.ring], end = order.begin[feature.ring + 1u];
+    const auto [half, short_half] = windows.at(i);
+    if (skip(i, half, short_half, begin, end)) continue;
+    if (straight(i, half, begin, end, feature) || straight(i, short_half, begin, end, feature)) keep(feature);
   }
 }
 

@@ -40,7 +40,7 @@ struct Feature {
 double range_step_m(double range_sigma_m, const FeatureConfig& config);
 
 /// `points_lidar` are the undistorted scan.points, same order; `range_sigma_m` is the noise of ranges. Features come
-/// ring by ring in order of firing.
+/// in a scattered order (scattered_order.h).
 std::vector<Feature> select_planar_features(const LidarScan& scan, const Cloud& points_lidar,
                                             double range_sigma_m, const FeatureConfig& config);
 

@@ -98,32 +98,35 @@ Linearised linearise(const std::vector<Match>& matches, const SE3& T_odom_lidar,
   return sums;
 }
 
-// The nearest matrix without negative eigenvalues.
-Mat6 without_negative(const Mat6& matrix) {
-  const Eigen::SelfAdjointEigenSolver<Mat6> solver(matrix);
-  return solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).asDiagonal() * solver.eigenvectors().transpose();
-}
-
-// A normal that errs by e has the row J + G e: on average J J' grows by G Cov(e) G', information that no surface
-// gives. Here it is taken away again.
-void remove_feigned(const std::vector<Match>& matches, const SE3& T_odom_lidar, const Weights& weights,
-                    Linearised& sums) {
+// A normal that errs by e has the row J + G e: on average J J' grows by G Cov(e) G', information that no surface gives.
+Linearised feigned(const std::vector<Match>& matches, const SE3& T_odom_lidar, const Weights& weights) {
   const Mat3 R_lidar_odom = T_odom_lidar.matrix3().transpose();
-  Linearised feigned;
+  Linearised sums;
   for (const Match& m : matches) {
     const double w = weights.of(m);
     for (const int k : {0, 1}) {
       const Vec6 row = point_to_plane_row(m.feature->point_lidar.cast<double>(),
                                           R_lidar_odom * m.plane->axis_odom[k].cast<double>());
       const double variance = m.plane->tilt_variance[k];
-      feigned.H.selfadjointView<Eigen::Lower>().rankUpdate(row, variance);
-      feigned.A.selfadjointView<Eigen::Lower>().rankUpdate(row, variance * w);
+      sums.H.selfadjointView<Eigen::Lower>().rankUpdate(row, variance);
+      sums.A.selfadjointView<Eigen::Lower>().rankUpdate(row, variance * w);
     }
   }
-  feigned.H.triangularView<Eigen::StrictlyUpper>() = feigned.H.transpose();
-  feigned.A.triangularView<Eigen::StrictlyUpper>() = feigned.A.transpose();
-  sums.H = without_negative(sums.H - feigned.H);
-  sums.A = without_negative(sums.A - feigned.A);
+  sums.H.triangularView<Eigen::StrictlyUpper>() = sums.H.transpose();
+  sums.A.triangularView<Eigen::StrictlyUpper>() = sums.A.transpose();
+  return sums;
+}
+
+// The share of a problem's information that is no feint: P with P M P' the true part, along the eigenvectors of M.
+Mat6 true_part(const Mat6& M, const Mat6& feigned) {
+  const Eigen::SelfAdjointEigenSolver<Mat6> solver(M);
+  const Mat6& V = solver.eigenvectors();
+  Vec6 root = Vec6::Zero();
+  for (int k = 0; k < 6; ++k) {
+    const double all = solver.eigenvalues()[k];
+    if (all > 0) root[k] = std::sqrt(std::max(0.0, 1 - V.col(k).dot(feigned * V.col(k)) / all));
+  }
+  return V * root.asDiagonal() * V.transpose();
 }
 
 double mean_cost(const std::vector<Match>& matches, const Weights& weights, size_t features) {
@@ -159,8 +162,6 @@ Registration register_scan(const std::vector<Feature>& features, const PosePrior
   double gate_m = std::max(config.max_distance_m, final_m);
   while (result.iterations < config.max_iterations && !result.converged) {
     const std::vector<Match> matches = match(features, result.T_odom_lidar, map, gate_m);
-    const Weights weights(matches, map, range_sigma_m, config, robust_scale_m);
-    Linearised sums = linearise(matches, result.T_odom_lidar, weights);
     ++result.iterations;
     result.correspondences = static_cast<int>(matches.size());
     if (result.correspondences < config.min_correspondences) {
@@ -169,10 +170,18 @@ Registration register_scan(const std::vector<Feature>& features, const PosePrior
       result.T_odom_lidar = prior.T_odom_lidar;
       return result;
     }
+    const Weights weights(matches, map, range_sigma_m, config, robust_scale_m);
+    const Linearised sums = linearise(matches, result.T_odom_lidar, weights);
+    const Linearised noise = feigned(matches, result.T_odom_lidar, weights);
+    const Mat6 H_part = true_part(sums.H, noise.H), A_part = true_part(sums.A, noise.A);
+    result.information = analyse_information(H_part * sums.H * H_part);
+    result.degeneracy = detect_degeneracy(result.information.H, result.correspondences, degeneracy);
+    result.scan_information = A_part * sums.A * A_part;
+    const Mat6 together = result.scan_information + prior_information;
     Vec6 step;
     if (weighed) {
       const Vec6 from_prior = (prior.T_odom_lidar.inverse() * result.T_odom_lidar).log();
-      step = (sums.A + prior_information).ldlt().solve(sums.b - prior_information * from_prior);
+      step = together.ldlt().solve(A_part * A_part * sums.b - prior_information * from_prior);
     } else {
       step = detect_degeneracy(sums.H, result.correspondences, degeneracy).solve(sums.A, sums.b);
     }
@@ -180,15 +189,9 @@ Registration register_scan(const std::vector<Feature>& features, const PosePrior
     const bool small = step.head<3>().norm() < converged_rotation_rad &&
                        step.tail<3>().norm() < config.converged_translation_m;
     result.converged = small && gate_m <= final_m;
-    if (result.converged || result.iterations == config.max_iterations) {
-      remove_feigned(matches, result.T_odom_lidar, weights, sums);
-      result.information = analyse_information(sums.H);
-      result.degeneracy = detect_degeneracy(sums.H, result.correspondences, degeneracy);
-      result.scan_information = sums.A;
-      result.covariance = (sums.A + prior_information).ldlt().solve(Mat6::Identity());
-      result.cost = mean_cost(matches, weights, features.size());
-      result.residual_m = rms_m(matches, robust_scale_m);
-    }
+    result.covariance = together.ldlt().solve(Mat6::Identity());
+    result.cost = mean_cost(matches, weights, features.size());
+    result.residual_m = rms_m(matches, robust_scale_m);
     if (small || step.tail<3>().norm() < 0.1 * final_m) gate_m = final_m;
   }
   return result;

@@ -103,11 +103,13 @@ void RingOrder::drop_repeated_firings() {
 
 void RingOrder::fill(const LidarScan& scan, const Cloud& undistorted_lidar, float jump_m) {
   const size_t n = index.size();
+  ring.resize(n);
   range_m.resize(n);
   shadowed.assign(n, 0);
   points_lidar.resize(n);
   for (size_t i = 0; i < n; ++i) {
     const LidarPoint& p = scan.points[index[i]];
+    ring[i] = p.ring;
     range_m[i] = std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z);
     points_lidar[i] = undistorted_lidar[index[i]];
   }

@@ -16,6 +16,7 @@ namespace vsslam {
 struct RingOrder {
   std::vector<uint32_t> begin;  ///< of each ring, and the end of the last
   std::vector<uint32_t> index;  ///< into scan.points
+  std::vector<uint16_t> ring;   ///< of each point, like all below
   std::vector<float> range_m;
   std::vector<float> firing;    ///< number of the firing since the ring's start, in steps of the usual one
   Cloud points_lidar;           ///< sorted

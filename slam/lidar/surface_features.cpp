@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "slam/lidar/patch.h"
+#include "slam/lidar/scattered_order.h"
 #include "slam/lidar/voxel_hash.h"
 
 namespace vsslam {
@@ -18,13 +19,15 @@ constexpr size_t kLeastNeighbours = 6;
 constexpr double kRadiusShare = 0.05;  // of the range: two lines of a scanner with 32 lasers over 40 degrees
 constexpr double kLineShare = 0.02;    // spread of the shorter side, as share of the longer: less is a line
 
-// One point per cube, the first: dense lines of a scanner would be each other's only neighbours.
+// One point per cube: dense lines of a scanner would be each other's only neighbours.
 Cloud thinned(const Cloud& points, double voxel_m, double min_range_m) {
   const auto inverse = static_cast<float>(1 / voxel_m);
   const auto least2 = static_cast<float>(min_range_m * min_range_m);
   KeyIndex seen(points.size() / 4);
   Cloud kept;
-  for (const Eigen::Vector3f& p : points) {
+  ScatteredOrder places(points.size());
+  for (size_t k = 0; k < points.size(); ++k) {
+    const Eigen::Vector3f& p = points[places.next()];
     if (p.squaredNorm() < least2) continue;
     if (static_cast<size_t>(seen.insert(voxel_key(p, inverse))) == kept.size()) kept.push_back(p);
   }

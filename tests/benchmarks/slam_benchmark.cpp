@@ -17,9 +17,11 @@ LidarScan scan_at(const Scene& scene, double x_m, Time stamp) {
       scene, [=](double) { return T_scene_base; }, rig(), stamp);
 }
 
+constexpr double kSigma_m = 0.007;
+
 struct Prepared {
   LidarOdometryConfig config;
-  LidarOdometry odometry{config};
+  LidarOdometry odometry{config, kSigma_m};
   LidarScan scan;
   Cloud points_lidar;
   std::vector<Feature> features, thin;
@@ -36,7 +38,8 @@ struct Prepared {
   void take(const Scene& scene, double x_m) {
     scan = scan_at(scene, x_m, Time::from_seconds(x_m));
     points_lidar = undistort(scan, MotionPath(scan.stamp), rig().lidar.T_base_lidar);
-    features = select_planar_features(scan, points_lidar, 16, config.features);
+    features = thin_features(
+        select_planar_features(scan, points_lidar, kSigma_m, config.features), config.map_voxel_m);
     thin = thin_features(features, config.voxel_m);
     T_odom_lidar = SE3(Quat::Identity(), {x_m, 0.1, 0.2}) * rig().lidar.T_base_lidar;
   }
@@ -59,7 +62,7 @@ BENCHMARK(BM_Undistort)->Unit(benchmark::kMillisecond);
 void BM_Features(benchmark::State& state) {
   const Prepared& p = corridor_scene();
   for (auto unused : state)
-    benchmark::DoNotOptimize(select_planar_features(p.scan, p.points_lidar, 16, p.config.features));
+    benchmark::DoNotOptimize(select_planar_features(p.scan, p.points_lidar, kSigma_m, p.config.features));
   state.counters["features"] = static_cast<double>(p.features.size());
 }
 BENCHMARK(BM_Features)->Unit(benchmark::kMillisecond);
@@ -75,9 +78,11 @@ void BM_Register(benchmark::State& state) {
   const Prepared& p = corridor_scene();
   Vec6 offset;
   offset << 0.001, 0.001, 0.002, 0.01, -0.01, 0.005;
+  LidarOdometry odometry = p.odometry;
+  const PosePrior prior{p.T_odom_lidar * SE3::exp(offset), 1e-4 * Mat6::Identity()};
   Registration r;
   for (auto unused : state) {
-    r = p.odometry.align(p.thin, p.T_odom_lidar * SE3::exp(offset));
+    r = odometry.align(p.thin, prior);
     benchmark::DoNotOptimize(r);
   }
   state.counters["iterations"] = r.iterations;

@@ -3,6 +3,7 @@
 #include <set>
 
 #include "slam/lidar/features.h"
+#include "slam/lidar/surface_features.h"
 #include "slam/lidar/undistort.h"
 #include "slam/lidar/voxel_hash.h"
 #include "tests/slam/analytic_scene.h"
@@ -14,8 +15,10 @@ using namespace testing_scene;
 
 const Noise kQuiet{.range_sigma_m = 0, .gyro_bias_radps = 0, .imu = false, .seed = 1};
 
+constexpr double kSigma_m = 0.007;
+
 std::vector<Feature> features_of(const LidarScan& s, const FeatureConfig& config = {}) {
-  return select_planar_features(s, undistort(s, MotionPath(s.stamp), rig().lidar.T_base_lidar), 16, config);
+  return select_planar_features(s, undistort(s, MotionPath(s.stamp), rig().lidar.T_base_lidar), kSigma_m, config);
 }
 LidarScan scan_at_origin(const Scene& scene, const Noise& noise = kQuiet) {
   return scan(
@@ -115,8 +118,74 @@ TEST(Features, ToleratesEmptyAndTinyScans) {
   LidarScan tiny;
   tiny.end = Time{1000};
   tiny.points.resize(3, {2, 0, 0, 1, 3, 0});
-  tiny.points.push_back({2, 0, 0, 1, 200, 0});  // a ring that the calibration does not know
+  tiny.points.push_back({2, 0, 0, 1, 200, 0});  // a ring far from the others
   EXPECT_TRUE(features_of(tiny).empty());
+}
+
+double measured_sigma_m(const LidarScan& s) {
+  const Cloud points_lidar = undistort(s, MotionPath(s.stamp), rig().lidar.T_base_lidar);
+  return measured_range_sigma_m(RingOrder(s, points_lidar, 0.3));
+}
+
+TEST(RangeNoise, IsMeasuredFromNeighboursInARing) {
+  for (const double sigma_m : {0.003, 0.007, 0.015, 0.03, 0.05}) {
+    const Noise noise{.range_sigma_m = sigma_m};
+    EXPECT_NEAR(measured_sigma_m(scan_at_origin(room(), noise)), sigma_m, 0.1 * sigma_m);
+    EXPECT_NEAR(measured_sigma_m(scan_at_origin(jambed_corridor(50, 4, 0.15), noise)), sigma_m, 0.2 * sigma_m);
+  }
+}
+
+TEST(RangeNoise, IsZeroWhereThereIsTooLittleToTell) {
+  EXPECT_EQ(measured_sigma_m(LidarScan{}), 0);
+}
+
+// The same places are features, whatever a driver does to the order and the times of the points.
+TEST(RingOrder, StandsSecondReturnsAndJitter) {
+  const LidarScan clean = scan_at_origin(room(), {});
+  const size_t usual = features_of(clean).size();
+  LidarScan doubled = clean, jittered = clean, timeless = clean;
+  for (size_t i = 0; i < clean.points.size(); i += 50) {
+    LidarPoint second = clean.points[i];
+    second.x *= 1.3f, second.y *= 1.3f, second.z *= 1.3f;
+    second.time_s += 3e-6f;
+    doubled.points.insert(doubled.points.begin() + static_cast<std::ptrdiff_t>(i + i / 50 + 1), second);
+  }
+  const RandomStream jitter(1, "jitter");
+  for (size_t i = 0; i < clean.points.size(); ++i) {
+    jittered.points[i].time_s += static_cast<float>(60e-6 * (2 * jitter.uniform(Time{}, i) - 1));
+    timeless.points[i].time_s = 0;
+  }
+  const auto count = [](const LidarScan& s) { return static_cast<double>(features_of(s).size()); };
+  EXPECT_GT(count(doubled), 0.97 * static_cast<double>(usual));
+  EXPECT_GT(count(jittered), 0.9 * static_cast<double>(usual));
+  EXPECT_GT(count(timeless), 0.9 * static_cast<double>(usual));
+}
+
+TEST(RingOrder, OnePairOfReturnsIsNotTheFiringPeriod) {
+  LidarScan pair = scan_at_origin(room(), {});
+  const size_t usual = features_of(pair).size();
+  LidarPoint second = pair.points[1000];
+  second.time_s += 3e-6f;
+  pair.points.insert(pair.points.begin() + 1001, second);
+  EXPECT_NEAR(static_cast<double>(features_of(pair).size()), static_cast<double>(usual), 12);
+}
+
+TEST(SurfaceFeatures, LieOnTheSurfacesOfAScanWithoutRings) {
+  const LidarScan s = scan_at_origin(room(), {});
+  const Cloud points_lidar = undistort(s, MotionPath(s.stamp), rig().lidar.T_base_lidar);
+  const double sigma_m = measured_surface_sigma_m(points_lidar, 0.2, {});
+  EXPECT_NEAR(sigma_m, 0.007, 0.003);
+  const auto features = select_surface_features(points_lidar, 0.007, 0.2, {});
+  ASSERT_GT(features.size(), 500u);
+  size_t along = 0;
+  for (const Feature& f : features) {
+    const bool east_or_west = std::abs(std::abs(f.point_lidar.x() + 0.1f) - 6) < 0.03f;
+    const bool inside = std::abs(f.point_lidar.y()) < 4.5f && std::abs(f.point_lidar.z() + 0.6f - 1.5f) < 1.2f;
+    if (!east_or_west || !inside) continue;
+    ++along;
+    EXPECT_LT(std::abs(f.chord_lidar.x()), 0.3f * f.chord_lidar.norm());
+  }
+  EXPECT_GT(along, 50u);
 }
 
 TEST(Thinning, KeepsOnePerVoxelAndDirection) {
@@ -136,8 +205,9 @@ TEST(Thinning, WhileSelectingGivesTheSame) {
        {scan_at_origin(jambed_corridor(50, 4, 0.15), {}), scan_at_origin(jambed_corridor(50, 4, 0.15))}) {
     const Cloud points_lidar = undistort(s, MotionPath(s.stamp), rig().lidar.T_base_lidar);
     for (double voxel_m : {0.1, 0.2, 0.8}) {
-      const auto expected = thin_features(select_planar_features(s, points_lidar, 16, {}), voxel_m);
-      const auto kept = select_thin_features(s, points_lidar, 16, {}, voxel_m);
+      const auto expected = thin_features(select_planar_features(s, points_lidar, kSigma_m, {}), voxel_m);
+      RingOrder order(s, points_lidar, range_step_m(kSigma_m, {}));
+      const auto kept = select_thin_features(order, kSigma_m, {}, voxel_m);
       ASSERT_EQ(kept.size(), expected.size());
       ASSERT_GT(kept.size(), 100u);
       for (size_t i = 0; i < kept.size(); ++i) {

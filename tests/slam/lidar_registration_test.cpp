@@ -19,24 +19,34 @@ SE3 at_x(double x_m) {
   return {Quat::Identity(), {x_m, 0.1, 0.2}};
 }
 
+constexpr double kSigma_m = 0.007;
+
 std::vector<Feature> features_at(const Scene& scene, const SE3& T_scene_base, Time stamp = {}) {
   const LidarScan s = scan(scene, resting(T_scene_base), rig(), stamp);
-  return select_planar_features(s, undistort(s, MotionPath(stamp), rig().lidar.T_base_lidar), 16, {});
+  return select_planar_features(s, undistort(s, MotionPath(stamp), rig().lidar.T_base_lidar), kSigma_m, {});
 }
 
 // A local map from scans along the axis; the odom frame is the scene's.
 struct Mapped {
   LidarOdometryConfig config;
-  LidarOdometry odometry{config};
-  explicit Mapped(const Scene& scene, int scans = 12) {
+  LidarOdometry odometry;
+  explicit Mapped(const Scene& scene, int scans = 12, const LidarOdometryConfig& settings = {})
+      : config(settings), odometry(config, kSigma_m) {
     for (int i = 0; i < scans; ++i)
-      odometry.insert_key(features_at(scene, at_x(i - 0.5 * scans), ms(i)), at_x(i - 0.5 * scans),
-                          rig().lidar.T_base_lidar);
+      odometry.insert_key(thin_features(features_at(scene, at_x(i - 0.5 * scans), ms(i)), config.map_voxel_m),
+                          at_x(i - 0.5 * scans), rig().lidar.T_base_lidar);
   }
   static Time ms(int i) { return Time{1'000'000 * int64_t{i}}; }
-  Registration align(const Scene& scene, const SE3& T_scene_base, const Vec6& offset) const {
+  Registration align(const Scene& scene, const SE3& T_scene_base, const Vec6& offset) {
     const auto features = thin_features(features_at(scene, T_scene_base, ms(500)), config.voxel_m);
-    return odometry.align(features, T_scene_base * rig().lidar.T_base_lidar * SE3::exp(offset));
+    return odometry.align(features,
+                          {T_scene_base * rig().lidar.T_base_lidar * SE3::exp(offset), claimed_covariance()});
+  }
+  // The prior's: 0.02 rad, 0.08 m.
+  static Mat6 claimed_covariance() {
+    Vec6 variances;
+    variances << Vec3::Constant(4e-4), Vec3::Constant(6.4e-3);
+    return variances.asDiagonal();
   }
 };
 
@@ -53,7 +63,7 @@ TEST(PointToPlane, RowIsTheDerivativeOfTheResidual) {
 }
 
 TEST(Registration, FindsThePoseInARoom) {
-  const Mapped mapped(room(), 4);
+  Mapped mapped(room(), 4);
   Vec6 offset;
   offset << 0.01, -0.01, 0.03, 0.08, -0.06, 0.04;
   const Registration r = mapped.align(room(), at_x(0.3), offset);
@@ -66,7 +76,7 @@ TEST(Registration, FindsThePoseInARoom) {
 
 TEST(Registration, KeepsThePriorAlongAnEndlessCorridorOnly) {
   const Scene scene = corridor(400);
-  const Mapped mapped(scene);
+  Mapped mapped(scene);
   Vec6 offset;
   offset << 0.005, -0.005, 0.01, 0.07, -0.05, 0.03;
   const Registration r = mapped.align(scene, at_x(0.5), offset);
@@ -83,7 +93,7 @@ TEST(Registration, KeepsThePriorAlongAnEndlessCorridorOnly) {
 
 TEST(Registration, SeesAlongACorridorWithJambs) {
   const Scene scene = jambed_corridor(60, 4, 0.15);
-  const Mapped mapped(scene);
+  Mapped mapped(scene);
   const Registration r = mapped.align(scene, at_x(0.5), (Vec6() << 0, 0, 0, 0.05, 0, 0).finished());
   EXPECT_EQ(r.degeneracy.directions, 0);
   const SE3 error = (at_x(0.5) * rig().lidar.T_base_lidar).inverse() * r.T_odom_lidar;
@@ -91,9 +101,9 @@ TEST(Registration, SeesAlongACorridorWithJambs) {
 }
 
 TEST(Registration, LeavesThePriorAloneWithoutAMap) {
-  const LidarOdometry odometry{LidarOdometryConfig{}};
+  LidarOdometry odometry({}, kSigma_m);
   const SE3 prior = at_x(3);
-  const Registration r = odometry.align(features_at(room(), at_x(0)), prior);
+  const Registration r = odometry.align(features_at(room(), at_x(0)), {prior, 1e-4 * Mat6::Identity()});
   EXPECT_TRUE(r.used_prior_only);
   EXPECT_EQ(r.degeneracy.directions, 6);
   EXPECT_EQ(r.T_odom_lidar.translation, prior.translation);
