@@ -83,7 +83,8 @@ struct Odometry::Impl {
   Prediction predict(const LidarScan& scan);
   ScanView view(const LidarScan& scan, const MotionPath& motion);
   Registration align(const ScanView& view, const Prediction& prediction);
-  void settle_motion(const LidarScan& scan, const Prediction& prediction, ScanView& view,
+  void try_last_velocity(const LidarScan& scan, Prediction& prediction, ScanView& view, Registration& registration);
+  void settle_motion(const LidarScan& scan, bool astray, const Prediction& prediction, ScanView& view,
                      Registration& registration);
   void judge_prior(const LidarScan& scan, const SE3& T_odom_base, const Mat6& known);
   void restart_prior(Time stamp);
@@ -103,8 +104,11 @@ OdometryScan Odometry::Impl::add(const LidarScan& scan) {
   ScanView seen = view(scan, prediction.motion);
   // 4 register: point to plane against the local map, weighed against the prior
   Registration registration = align(seen, prediction);
-  // ... and again if the robot moved otherwise than the prior said, which the points were undistorted by
-  settle_motion(scan, prediction, seen, registration);
+  // ... and again if the prior leads nowhere: by the last velocity; or if the robot moved otherwise than thought, which
+  // the points were undistorted by
+  const bool astray = lidar.looks_lost(registration);
+  try_last_velocity(scan, prediction, seen, registration);
+  settle_motion(scan, astray, prediction, seen, registration);
   const SE3 T_odom_base = registration.T_odom_lidar * rig.lidar.T_base_lidar.inverse();
   const Mat6 covariance = moved_covariance(registration.covariance, rig.lidar.T_base_lidar.inverse());
   // 5 what the LiDAR has seen tells what the prior is worth, and corrects its biases and velocity
@@ -198,17 +202,38 @@ Registration Odometry::Impl::align(const ScanView& seen, const Prediction& predi
   return first;
 }
 
+// A prior that is wrong beyond the reach of a registration (rates in degrees) would blind the LiDAR. Whichever the scan
+// fits better is right.
+void Odometry::Impl::try_last_velocity(const LidarScan& scan, Prediction& prediction, ScanView& seen,
+                                       Registration& registration) {
+  if (!last_odom_base || !trust.believed()) return;
+  const Vec6 shift =
+      (prediction.T_odom_base.inverse() * registration.T_odom_lidar * rig.lidar.T_base_lidar.inverse()).log();
+  const double surprise = shift.dot(prediction.covariance.ldlt().solve(shift)) / 6;
+  constexpr double kSurprising = 25;  // five sigma
+  if (!lidar.looks_lost(registration) && surprise < kSurprising) return;
+  const Prediction other =
+      predict(scan, steady_motion(coasting.twist(), last_odom_base->stamp, scan.end), coasting.covariance(scan.stamp));
+  ScanView other_seen = view(scan, other.motion);
+  const Registration other_registration = align(other_seen, other);
+  if (other_registration.used_prior_only || other_registration.cost >= registration.cost) return;
+  prediction = other;
+  seen = std::move(other_seen);
+  registration = other_registration;
+}
+
 // A scan that was undistorted by a wrong motion is bent, and so registered a little off; where it was registered all the
 // same tells more of the motion than the prior knew. By what the prior missed since the last scan, at a steady rate, it
 // misses during this one. Repeated until the two agree. The first scan of all, taken when nothing was known of the
 // motion, is set right together with the second. (As in MOLA, which estimates the twist with the pose.)
-void Odometry::Impl::settle_motion(const LidarScan& scan, const Prediction& prediction, ScanView& seen,
+void Odometry::Impl::settle_motion(const LidarScan& scan, bool astray, const Prediction& prediction, ScanView& seen,
                                    Registration& registration) {
   constexpr double kBent_m = 0.05, kBent_rad = 0.01;  // over a scan: what features and gates bear without notice
   constexpr int kRounds = 4;
   const std::optional<LidarScan> first = std::exchange(first_scan, std::nullopt);
   if (!last_odom_base && rolls(scan)) first_scan = scan;
-  if (!last_odom_base || !rolls(scan)) return;
+  constexpr int64_t kStart = 3;  // scans until the velocity is known well enough to undistort by
+  if (!last_odom_base || !rolls(scan) || (health.scans > kStart && !astray)) return;
   const SE3 T_lidar_base = rig.lidar.T_base_lidar.inverse();
   const double dt_s = seconds_between(last_odom_base->stamp, scan.stamp);
   Vec6 corrected = Vec6::Zero();  // twist beside the prior's

@@ -4,20 +4,17 @@
 
 namespace vsslam {
 
+// The velocity changes by up to a dt from interval to interval, and is steady within one: a shift is taken for a wrong
+// velocity, once. (With a steady acceleration instead it would be taken for twice the velocity, at the interval's end.)
 FixHistory::Mat12 FixHistory::predicted(double dt_s) const {
+  Mat12 P = P_;
+  const double turn_radps = config_.unknown_turn_radps2 * dt_s, speed_mps = config_.unknown_accel_mps2 * dt_s;
+  P.diagonal().segment<3>(6).array() += turn_radps * turn_radps;
+  P.diagonal().tail<3>().array() += speed_mps * speed_mps;
   Mat12 F = Mat12::Identity();
   F.topLeftCorner<6, 6>() = SE3::exp(twist_ * dt_s).inverse().adjoint();
   F.topRightCorner<6, 6>() = dt_s * Mat6::Identity();
-  Vec6 acceleration2;  // white, over the interval: its integral has the variance a^2 dt^2, its second a^2 dt^4 / 4
-  acceleration2 << Vec3::Constant(config_.unknown_turn_radps2 * config_.unknown_turn_radps2),
-      Vec3::Constant(config_.unknown_accel_mps2 * config_.unknown_accel_mps2);
-  const double dt2 = dt_s * dt_s;
-  Mat12 P = F * P_ * F.transpose();
-  P.topLeftCorner<6, 6>().diagonal() += 0.25 * dt2 * dt2 * acceleration2;
-  P.bottomRightCorner<6, 6>().diagonal() += dt2 * acceleration2;
-  P.topRightCorner<6, 6>().diagonal() += 0.5 * dt2 * dt_s * acceleration2;
-  P.bottomLeftCorner<6, 6>().diagonal() += 0.5 * dt2 * dt_s * acceleration2;
-  return P;
+  return F * P * F.transpose();
 }
 
 Mat6 FixHistory::covariance(Time end) const {

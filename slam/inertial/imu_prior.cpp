@@ -82,7 +82,10 @@ void ImuPrior::start(const InitialState& state) {
       square(state.at_rest ? kRestSpeed_mps : config_.max_speed_mps / 3));
   state_.P.diagonal().segment<3>(9).setConstant(square(gyro_bias_sigma_radps_));
   state_.P.bottomRightCorner<3, 3>().diagonal().setConstant(square(bias));
+  rest_.reset();
   if (!state.at_rest) return;
+  rest_ = ImuBias{state.gyro_bias_radps, R_imu_odom * Vec3(0, 0, g) + state.accel_bias_mps2};
+  rest_scans_ = 1;
   // At rest up was found from the specific force: f = g R' e_z + b, so a level bias of b is a tilt of b / g.
   const Mat3 force = hat(R_imu_odom * Vec3(0, 0, g));  // d(R' g)/d(rotation)
   const Mat3 noise = square(0.02 * bias) * Mat3::Identity();
@@ -157,24 +160,30 @@ void ImuPrior::restart(const OdometryFix& fix, double dt_s) {
   state_.P.diagonal().tail<3>().setConstant(square(config_.accel_bias_sigma_mps2));
 }
 
-// Quiet, and not known to move: at constant speed an IMU is as quiet.
-bool ImuPrior::stands(Time from, Time to) const {
-  constexpr double kSpeed_mps = 0.05;
-  if (state_.v_odom.norm() > kSpeed_mps) return false;
-  Vec3 gyro_low = Vec3::Constant(1e9), gyro_high = -gyro_low, accel_low = gyro_low, accel_high = gyro_high;
-  int count = 0;
+// Quiet, not known to move, and feeling what it felt at the start, at rest: at constant speed an IMU is as quiet, and a
+// robot that sets off gently feels hardly more, but steadily.
+bool ImuPrior::stands(Time from, Time to) {
+  constexpr double kSpeed_mps = 0.05, kForce_mps2 = 0.02, kRate_radps = 0.005;
+  if (!rest_) return false;
+  Vec3 gyro = Vec3::Zero(), accel = Vec3::Zero();
+  double count = 0;
   for (const ImuSample& sample : imu_.samples()) {
     if (sample.stamp < from || sample.stamp > to) continue;
-    gyro_low = gyro_low.cwiseMin(sample.gyro_radps);
-    gyro_high = gyro_high.cwiseMax(sample.gyro_radps);
-    accel_low = accel_low.cwiseMin(sample.accel_mps2);
-    accel_high = accel_high.cwiseMax(sample.accel_mps2);
+    gyro += sample.gyro_radps;
+    accel += sample.accel_mps2;
     ++count;
   }
-  const double noise_gyro = sheet_.gyro_noise_radps_rthz * std::sqrt(sheet_.rate_hz),
-               noise_accel = sheet_.accel_noise_mps2_rthz * std::sqrt(sheet_.rate_hz);
-  return count >= 3 && (gyro_high - gyro_low).norm() < 2 * config_.rest_gyro_radps + noise_gyro &&
-         (accel_high - accel_low).norm() < 2 * config_.rest_accel_mps2 + noise_accel;
+  if (count < 3 || state_.v_odom.norm() > kSpeed_mps) return false;
+  gyro /= count, accel /= count;
+  // Three sigma of the mean of three axes.
+  const double noise = 3 * std::sqrt(3 * sheet_.rate_hz / count) / config_.imu_noise_factor;
+  if ((gyro - rest_->gyro_radps).norm() > kRate_radps + noise * sheet_.gyro_noise_radps_rthz ||
+      (accel - rest_->accel_mps2).norm() > kForce_mps2 + noise * sheet_.accel_noise_mps2_rthz)
+    return false;
+  rest_scans_ = std::min(rest_scans_ + 1, 100);  // the mean follows a bias that drifts
+  rest_->gyro_radps += (gyro - rest_->gyro_radps) / rest_scans_;
+  rest_->accel_mps2 += (accel - rest_->accel_mps2) / rest_scans_;
+  return true;
 }
 
 // Velocity zero, as measured. The pose is the registration's and stays (a Schmidt update).

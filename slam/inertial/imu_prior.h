@@ -33,7 +33,7 @@ class ImuPrior : public MotionPrior {
   /// From `begin`, the stamp of the state. Appends the motion to `path` if given. Nothing if samples are missing.
   std::optional<State> predict(Time begin, Time end, MotionPath* path) const;
   void restart(const OdometryFix& fix, double dt_s);
-  bool stands(Time from, Time to) const;
+  bool stands(Time from, Time to);
   void stand_still();
 
   InertialConfig config_;
@@ -43,6 +43,8 @@ class ImuPrior : public MotionPrior {
   State state_;  // at the last fix
   ImuBias start_bias_;
   double gyro_bias_sigma_radps_ = 0.01;
+  std::optional<ImuBias> rest_;  // what the IMU gives at rest, if it began so
+  int rest_scans_ = 0;           // that it is the mean of
 };
 
 }  // namespace vsslam

@@ -2,12 +2,32 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace vsslam {
 
-void WheelTrack::add(const WheelSample& sample) {
+namespace {
+
+// Of encoders on joints that are reported within a turn (-pi .. pi, or 0 .. 2 pi).
+void go_on(double last_rad, double& angle_rad, double& turns_rad) {
+  constexpr double kTurn = 2 * std::numbers::pi;
+  angle_rad += turns_rad;
+  const double step_rad = angle_rad - last_rad;
+  // A step of about a turn; other leaps are no wrap.
+  if (std::abs(step_rad) < 0.5 * kTurn || std::abs(step_rad) > 1.5 * kTurn) return;
+  turns_rad -= std::copysign(kTurn, step_rad);
+  angle_rad -= std::copysign(kTurn, step_rad);
+}
+
+}  // namespace
+
+void WheelTrack::add(WheelSample sample) {
   if (!std::isfinite(sample.left_rad) || !std::isfinite(sample.right_rad)) return;
   if (!samples_.empty() && sample.stamp <= samples_.back().stamp) return;
+  if (!samples_.empty()) {
+    go_on(samples_.back().left_rad, sample.left_rad, left_turns_rad_);
+    go_on(samples_.back().right_rad, sample.right_rad, right_turns_rad_);
+  }
   samples_.push_back(sample);
 }
 

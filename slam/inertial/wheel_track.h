@@ -19,8 +19,9 @@ class WheelTrack {
  public:
   WheelTrack(const WheelCalibration& wheels, double max_gap_s) : wheels_(wheels), max_gap_s_(max_gap_s) {}
 
-  /// Ignores samples that are not finite or not newer than the last.
-  void add(const WheelSample& sample);
+  /// Ignores samples that are not finite or not newer than the last. Angles that wrap at a turn go on: no wheel turns
+  /// half a turn from sample to sample.
+  void add(WheelSample sample);
   /// Keeps what interpolation at `stamp` needs.
   void forget_before(Time stamp);
 
@@ -33,6 +34,7 @@ class WheelTrack {
   WheelCalibration wheels_;
   double max_gap_s_;
   std::deque<WheelSample> samples_;
+  double left_turns_rad_ = 0, right_turns_rad_ = 0;  // wrapped so far
 };
 
 }  // namespace vsslam

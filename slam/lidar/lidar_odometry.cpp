@@ -51,17 +51,25 @@ PosePrior astray(PosePrior prior) {
 
 }  // namespace
 
+// What is seen for the first time, around a corner, has no planes yet; what is seen again must fit as it did.
+bool LidarOdometry::looks_lost(const Registration& registration) const {
+  constexpr double kLost = 0.2, kSeenAgain = 0.1;  // of the features
+  return registration.used_prior_only || registration.misfit > usual_misfit_ + kLost ||
+         registration.cost > 1 - kSeenAgain * (1 - usual_misfit_);
+}
+
 Registration LidarOdometry::align(const std::vector<Feature>& thin_features, const PosePrior& prior) {
-  constexpr double kLost = 0.2, kMemory = 0.9;  // of the features: a fifth that fitted lately does not now
+  constexpr double kMemory = 0.9;
+  constexpr int kLongestPause = 32;
   const auto from = [&](const SE3& start, const PosePrior& around) {
     return register_scan(thin_features, around, start, map_, range_sigma_m(), config_.registration,
                          config_.degeneracy);
   };
   Registration best = from(prior.T_odom_lidar, prior);
   const double range_m = median_range_m(thin_features);
-  const bool lost = best.used_prior_only || best.cost > usual_cost_ + kLost;
-  if (thin_features.size() >= static_cast<size_t>(config_.registration.min_correspondences) &&
-      (lost || needs_search(prior, range_m, config_.search))) {
+  const bool lost = looks_lost(best);
+  const bool enough = thin_features.size() >= static_cast<size_t>(config_.registration.min_correspondences);
+  if (enough && (lost || needs_search(prior, range_m, config_.search)) && --search_waits_ < 0) {
     const PosePrior around = lost ? astray(prior) : prior;
     const double standing_cost = best.cost;
     for (const SE3& start : likely_poses(thin_features, around, range_m, map_, range_sigma_m(), config_.search)) {
@@ -70,9 +78,11 @@ Registration LidarOdometry::align(const std::vector<Feature>& thin_features, con
           other.cost < standing_cost - config_.search.clearly_better)
         best = other;
     }
+    search_pause_ = best.cost < standing_cost ? 0 : std::clamp(2 * search_pause_, 1, kLongestPause);
+    search_waits_ = search_pause_;
   }
   if (!best.used_prior_only)
-    usual_cost_ = usual_cost_ == 1 ? best.cost : kMemory * usual_cost_ + (1 - kMemory) * best.cost;
+    usual_misfit_ = usual_misfit_ == 1 ? best.misfit : kMemory * usual_misfit_ + (1 - kMemory) * best.misfit;
   return best;
 }
 

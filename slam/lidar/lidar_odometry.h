@@ -47,6 +47,8 @@ class LidarOdometry {
   /// it too.
   Registration align(const std::vector<Feature>& thin_features, const PosePrior& prior);
   bool has_map() const { return keys_made_ > 0; }
+  /// Whether a scan fits so much worse than scans did lately that it may be lost.
+  bool looks_lost(const Registration& registration) const;
   /// Far enough from the last key scan, or the first.
   bool wants_key(const SE3& T_odom_base) const;
   /// Adds a key scan to the local map; the oldest leaves.
@@ -60,7 +62,8 @@ class LidarOdometry {
   std::deque<std::vector<MapPoint>> keys_odom_;  // in the map
   double range_sigma_m_;
   std::vector<double> heard_m_;  // noise of the first scans
-  double usual_cost_ = 1;        // of the scans so far, a running mean; 1: none yet
+  double usual_misfit_ = 1;      // of the scans so far, a running mean; 1: none yet
+  int search_pause_ = 0, search_waits_ = 0;  // scans: after a search that found nothing the next waits twice as long
   std::optional<SE3> T_odom_lastkey_;
   uint32_t keys_made_ = 0;
 };

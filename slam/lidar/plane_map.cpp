@@ -15,11 +15,20 @@ void PlaneMapConfig::fields(Fields& f) {
   f("min_points", min_points, between(3, 1e6));
   f("min_lines", min_lines, between(1, 64));
   f.automatic("max_thickness_m", max_thickness_m, positive());
+  f("plane_sigma_m", plane_sigma_m, non_negative());
   f("max_normal_sigma_rad", max_normal_sigma_rad, positive());
   f.automatic("max_chord_tilt_m", max_chord_tilt_m, positive());
 }
 
 namespace {
+
+// Of the cubes' corners from the origin. The origin of odom is where the robot began, on the ground and often in the
+// middle of a corridor: a floor or wall that runs along the border between two cubes belongs to neither.
+const Eigen::Vector3f kCorner_m(0.7f, 0.7f, 0.7f);  // half way between borders at the finest level, 0.2 m
+
+uint64_t cube_of(const Eigen::Vector3f& point_odom, float inverse_cell) {
+  return voxel_key(point_odom + kCorner_m, inverse_cell);
+}
 
 // Lower triangle of sum v v^T.
 struct SquareSum {
@@ -95,10 +104,11 @@ bool fit_plane(const Sums& sums, const Eigen::Vector3f& origin, double range_sig
   plane.normal_odom = normal.cast<float>();
   plane.distance_m = static_cast<float>(normal.dot(center_odom));
   plane.center_odom = center_odom.cast<float>();
-  plane.center_variance_m2 = static_cast<float>(patch.thickness_m2(range_sigma_m) / sums.count);
+  const double whole_m2 = config.plane_sigma_m * config.plane_sigma_m;
+  plane.center_variance_m2 = static_cast<float>(patch.thickness_m2(range_sigma_m) / sums.count + whole_m2);
   for (const int k : {0, 1}) {
     plane.axis_odom[k] = patch.axes.col(k + 1).cast<float>();
-    plane.tilt_variance[k] = static_cast<float>(tilt[k]);
+    plane.tilt_variance[k] = static_cast<float>(tilt[k] + whole_m2 / patch.spread_m2[k + 1]);
   }
   return true;
 }
@@ -128,7 +138,7 @@ void PlaneMap::build_level(Level& level, std::vector<MapPoint>& points) {
   std::vector<CellSums> sums;
   std::vector<int> cell_of(points.size());
   for (size_t i = 0; i < points.size(); ++i) {
-    cell_of[i] = level.index.insert(voxel_key(points[i].point_odom, level.inverse_cell));
+    cell_of[i] = level.index.insert(cube_of(points[i].point_odom, level.inverse_cell));
     if (sums.size() < level.index.size()) sums.emplace_back().origin = points[i].point_odom;
     sums[static_cast<size_t>(cell_of[i])].add_heading(points[i].chord_odom);
   }
@@ -165,7 +175,7 @@ void PlaneMap::build_level(Level& level, std::vector<MapPoint>& points) {
 
 const Plane* PlaneMap::find(const Eigen::Vector3f& point_odom, const Eigen::Vector3f& chord_odom) const {
   for (const Level& level : levels_) {
-    const int number = level.index.find(voxel_key(point_odom, level.inverse_cell));
+    const int number = level.index.find(cube_of(point_odom, level.inverse_cell));
     if (number < 0) return nullptr;
     const Cell& cell = level.cells[static_cast<size_t>(number)];
     const int k = cell.chord_class(chord_odom);

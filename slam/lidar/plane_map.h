@@ -26,6 +26,9 @@ struct PlaneMapConfig {
   /// RMS distance of the points from their plane. Automatic: 2.15 times the noise of ranges, which leaves room for
   /// poses and lasers that err by as much again.
   std::optional<double> max_thickness_m;
+  /// What a plane errs by beside the noise of its points: lasers that are biased, surfaces that are not flat, poses that
+  /// bent the map. Over the plane's extent it is also a tilt.
+  double plane_sigma_m = 0.003;
   double max_normal_sigma_rad =
       0.05;  ///< uncertainty of the normal, from the spread and number of the points
   /// A point whose chord leaves the plane by more lies on another surface. Automatic: 4 times the noise of the

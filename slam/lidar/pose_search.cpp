@@ -1,5 +1,6 @@
 #include "slam/lidar/pose_search.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -62,27 +63,38 @@ bool needs_search(const PosePrior& prior, double range_m, const PoseSearchConfig
 std::vector<SE3> likely_poses(const std::vector<Feature>& features, const PosePrior& prior, double range_m,
                               const PlaneMap& map, double range_sigma_m, const PoseSearchConfig& config) {
   const std::vector<Feature> judges = every_nth(features, config.features);
-  const double reach_m = std::min(config.max_m, kSigmas * position_sigma_m(prior));
-  const double reach_rad = std::min(config.max_rad, kSigmas * rotation_sigma_rad(prior));
-  // Registration bridges the distance to the next pose of the grid.
   const double step_m = config.reach_m, step_rad = config.reach_m / range_m;
-  const int steps = static_cast<int>(std::ceil(reach_m / step_m));
-  const int turns = static_cast<int>(std::ceil(reach_rad / step_rad));
   const double scale_m = std::max(4.3 * range_sigma_m, 0.5 * step_m);
+  const auto steps_of = [](double sigma, double most, double step) {
+    return static_cast<int>(std::ceil(std::min(most, kSigmas * sigma) / step - 1));  // registration bridges one
+  };
+  // The ellipse of the prior: along a corridor it is long and narrow.
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> ellipse(prior.covariance.block<2, 2>(3, 3));
+  const Eigen::Vector2d sigma_m = ellipse.eigenvalues().cwiseMax(0.0).cwiseSqrt();
+  const int along = steps_of(sigma_m[1], config.max_m, step_m), aside = steps_of(sigma_m[0], config.max_m, step_m);
+  const int turns = steps_of(std::sqrt(prior.covariance(2, 2)), config.max_rad, step_rad);
+  const auto pose = [&](const Candidate& c) {
+    return prior.T_odom_lidar * SE3::from_rpy({0, 0, c.yaw_rad}, {c.x_m, c.y_m, 0});
+  };
+  const auto judged = [&](Candidate c) {
+    c.fit = fit(judges, pose(c), map, scale_m);
+    return c;
+  };
+  const Candidate standing = judged({});
   std::vector<Candidate> candidates;
   for (int yaw = -turns; yaw <= turns; ++yaw)
-    for (int x = -steps; x <= steps; ++x)
-      for (int y = -steps; y <= steps; ++y) {
-        if (std::hypot(x, y) > steps + 0.5) continue;
-        Candidate c{0, x * step_m, y * step_m, yaw * step_rad};
-        c.fit = fit(judges, prior.T_odom_lidar * SE3::from_rpy({0, 0, c.yaw_rad}, {c.x_m, c.y_m, 0}), map, scale_m);
-        candidates.push_back(c);
+    for (int a = -along; a <= along; ++a)
+      for (int b = -aside; b <= aside; ++b) {
+        const Eigen::Vector2d place_m =
+            ellipse.eigenvectors() * Eigen::Vector2d(b * step_m, a * step_m);
+        const Candidate c = judged({0, place_m.x(), place_m.y(), yaw * step_rad});
+        if (c.fit > standing.fit + 0.5 * config.clearly_better) candidates.push_back(c);
       }
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const Candidate& a, const Candidate& b) { return a.fit > b.fit; });
-  std::vector<Candidate> chosen{{}};  // the prior itself
+  std::vector<Candidate> chosen;
   for (const Candidate& c : candidates) {
-    if (chosen.size() > static_cast<size_t>(config.finalists)) break;
+    if (chosen.size() == static_cast<size_t>(config.finalists)) break;
     const bool near = std::any_of(chosen.begin(), chosen.end(), [&](const Candidate& other) {
       return std::hypot(c.x_m - other.x_m, c.y_m - other.y_m) < 1.5 * step_m &&
              std::abs(c.yaw_rad - other.yaw_rad) < 1.5 * step_rad;
@@ -90,8 +102,7 @@ std::vector<SE3> likely_poses(const std::vector<Feature>& features, const PosePr
     if (!near) chosen.push_back(c);
   }
   std::vector<SE3> poses;
-  for (const Candidate& c : chosen)
-    poses.push_back(prior.T_odom_lidar * SE3::from_rpy({0, 0, c.yaw_rad}, {c.x_m, c.y_m, 0}));
+  for (const Candidate& c : chosen) poses.push_back(pose(c));
   return poses;
 }
 

@@ -26,8 +26,8 @@ struct PoseSearchConfig {
 /// Whether registration from the prior could miss. `range_m` is how far the scan looks: a turn moves it by as much.
 bool needs_search(const PosePrior& prior, double range_m, const PoseSearchConfig& config);
 
-/// The prior's pose first, then up to `finalists` others within 3 sigma of it (moved in its x and y, turned about its
-/// z), those first where the scan fits best. None less than half a step from another.
+/// Up to `finalists` poses within 3 sigma of the prior (moved in its x and y, turned about its z) where the scan fits
+/// better than at the prior itself, the best first; none beside another.
 std::vector<SE3> likely_poses(const std::vector<Feature>& features, const PosePrior& prior, double range_m,
                               const PlaneMap& map, double range_sigma_m, const PoseSearchConfig& config);
 

@@ -15,7 +15,7 @@ void RegistrationConfig::fields(Fields& f) {
   f("max_distance_m", max_distance_m, positive());
   f.automatic("final_distance_m", final_distance_m, positive());
   f.automatic("robust_scale_m", robust_scale_m, positive());
-  f("plane_sigma_m", plane_sigma_m, non_negative());
+  f("prior_sigmas", prior_sigmas, positive());
   f("converged_rotation_deg", converged_rotation_deg, positive());
   f("converged_translation_m", converged_translation_m, positive());
 }
@@ -64,22 +64,20 @@ struct Linearised {
 // share its error: their mean has the variance (noise^2 + n plane^2) / n, so each weighs 1 / (noise^2 + n plane^2).
 class Weights {
  public:
-  Weights(const std::vector<Match>& matches, const PlaneMap& map, double range_sigma_m,
-          const RegistrationConfig& config, double robust_scale_m)
+  Weights(const std::vector<Match>& matches, const PlaneMap& map, double range_sigma_m, double robust_scale_m)
       : counts_(points_per_plane(matches, map)),
         noise_m2_(range_sigma_m * range_sigma_m),
-        plane_m2_(config.plane_sigma_m * config.plane_sigma_m),
         inverse_scale_m2_(1 / (robust_scale_m * robust_scale_m)) {}
 
   double of(const Match& m) const {
-    const double shared_m2 = plane_m2_ + static_cast<double>(m.plane->variance_m2(m.point_odom));
+    const double shared_m2 = static_cast<double>(m.plane->variance_m2(m.point_odom));
     return robust(m) / (noise_m2_ + counts_[static_cast<size_t>(m.plane->number)] * shared_m2);
   }
   double robust(const Match& m) const { return 1 / (1 + m.residual_m * m.residual_m * inverse_scale_m2_); }
 
  private:
   std::vector<int> counts_;
-  double noise_m2_, plane_m2_, inverse_scale_m2_;
+  double noise_m2_, inverse_scale_m2_;
 };
 
 Linearised linearise(const std::vector<Match>& matches, const SE3& T_odom_lidar, const Weights& weights) {
@@ -117,33 +115,25 @@ Linearised feigned(const std::vector<Match>& matches, const SE3& T_odom_lidar, c
   return sums;
 }
 
-// The share of a problem's information that is no feint: P with P M P' the true part, along the eigenvectors of M.
-Mat6 true_part(const Mat6& M, const Mat6& feigned) {
+// What of a problem's information to believe, as P with P M P, along the eigenvectors of M. Where a share s of it is
+// true, the best guess of a true row of J from the noisy one is s times it (Wiener), so s^2 is believed: next to nothing
+// in a direction that noise alone could have made, nearly all of what stands far above it.
+Mat6 believed_part(const Mat6& M, const Mat6& feigned) {
   const Eigen::SelfAdjointEigenSolver<Mat6> solver(M);
   const Mat6& V = solver.eigenvectors();
-  Vec6 root = Vec6::Zero();
+  Vec6 share = Vec6::Zero();
   for (int k = 0; k < 6; ++k) {
     const double all = solver.eigenvalues()[k];
-    if (all > 0) root[k] = std::sqrt(std::max(0.0, 1 - V.col(k).dot(feigned * V.col(k)) / all));
+    if (all > 0) share[k] = std::max(0.0, 1 - V.col(k).dot(feigned * V.col(k)) / all);
   }
-  return V * root.asDiagonal() * V.transpose();
+  return V * share.asDiagonal() * V.transpose();
 }
 
-double mean_cost(const std::vector<Match>& matches, const Weights& weights, size_t features) {
-  double fitting = 0;
-  for (const Match& m : matches) fitting += weights.robust(m);
-  return features == 0 ? 1 : 1 - fitting / static_cast<double>(features);
-}
-
-double rms_m(const std::vector<Match>& matches, double robust_scale_m) {
-  double sum_m2 = 0;
-  int count = 0;
-  for (const Match& m : matches) {
-    if (std::abs(m.residual_m) > 3 * robust_scale_m) continue;
-    sum_m2 += m.residual_m * m.residual_m;
-    ++count;
-  }
-  return count == 0 ? 0 : std::sqrt(sum_m2 / count);
+// How many of the matches fit, softly.
+double fitting(const std::vector<Match>& matches, const Weights& weights) {
+  double sum = 0;
+  for (const Match& m : matches) sum += weights.robust(m);
+  return sum;
 }
 
 }  // namespace
@@ -166,22 +156,24 @@ Registration register_scan(const std::vector<Feature>& features, const PosePrior
     result.correspondences = static_cast<int>(matches.size());
     if (result.correspondences < config.min_correspondences) {
       result.used_prior_only = true;
-      result.cost = 1;
+      result.cost = result.misfit = 1;
       result.T_odom_lidar = prior.T_odom_lidar;
       return result;
     }
-    const Weights weights(matches, map, range_sigma_m, config, robust_scale_m);
+    const Weights weights(matches, map, range_sigma_m, robust_scale_m);
     const Linearised sums = linearise(matches, result.T_odom_lidar, weights);
     const Linearised noise = feigned(matches, result.T_odom_lidar, weights);
-    const Mat6 H_part = true_part(sums.H, noise.H), A_part = true_part(sums.A, noise.A);
+    const Mat6 H_part = believed_part(sums.H, noise.H), A_part = believed_part(sums.A, noise.A);
     result.information = analyse_information(H_part * sums.H * H_part);
     result.degeneracy = detect_degeneracy(result.information.H, result.correspondences, degeneracy);
     result.scan_information = A_part * sums.A * A_part;
-    const Mat6 together = result.scan_information + prior_information;
+    const Vec6 from_prior = (prior.T_odom_lidar.inverse() * result.T_odom_lidar).log();
+    const double surprise = from_prior.dot(prior_information * from_prior) / (6 * config.prior_sigmas * config.prior_sigmas);
+    const Mat6 believed_prior = prior_information / (1 + surprise);
+    const Mat6 together = result.scan_information + believed_prior;
     Vec6 step;
     if (weighed) {
-      const Vec6 from_prior = (prior.T_odom_lidar.inverse() * result.T_odom_lidar).log();
-      step = together.ldlt().solve(A_part * A_part * sums.b - prior_information * from_prior);
+      step = together.ldlt().solve(A_part * A_part * sums.b - believed_prior * from_prior);
     } else {
       step = detect_degeneracy(sums.H, result.correspondences, degeneracy).solve(sums.A, sums.b);
     }
@@ -190,8 +182,9 @@ Registration register_scan(const std::vector<Feature>& features, const PosePrior
                        step.tail<3>().norm() < config.converged_translation_m;
     result.converged = small && gate_m <= final_m;
     result.covariance = together.ldlt().solve(Mat6::Identity());
-    result.cost = mean_cost(matches, weights, features.size());
-    result.residual_m = rms_m(matches, robust_scale_m);
+    const double fit = fitting(matches, weights);
+    result.cost = 1 - fit / static_cast<double>(features.size());
+    result.misfit = 1 - fit / static_cast<double>(matches.size());
     if (small || step.tail<3>().norm() < 0.1 * final_m) gate_m = final_m;
   }
   return result;

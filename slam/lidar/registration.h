@@ -25,9 +25,9 @@ struct RegistrationConfig {
   std::optional<double> final_distance_m;
   /// Cauchy: weight 1 / (1 + (r / scale)^2). Automatic: 4.3 times the noise of ranges.
   std::optional<double> robust_scale_m;
-  /// What the planes of a scan err by beside the noise of its points, each plane by as much for all its points: lasers
-  /// that are biased, surfaces that are not flat, poses that bent the map.
-  double plane_sigma_m = 0.003;
+  /// A prior farther than so many sigma from where the scan fits is believed ever less (Cauchy): far more than one that
+  /// is merely worse than it claims, which is left to PriorTrust.
+  double prior_sigmas = 20;
   double converged_rotation_deg = 0.005;
   double converged_translation_m = 1e-4;
   void fields(Fields& f);
@@ -47,7 +47,7 @@ struct Registration {
   Degeneracy degeneracy;    ///< at the last iteration
   int correspondences = 0;
   double cost = 0;          ///< mean over the features of the robust cost, in 0..1; a feature without plane costs 1
-  double residual_m = 0;    ///< RMS of the residuals within 3 robust scales
+  double misfit = 0;        ///< the same over those with a plane: how badly what is seen again fits
   int iterations = 0;
   bool converged = false;
   bool used_prior_only = false;
