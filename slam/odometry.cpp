@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
 #include <optional>
 #include <utility>
 
@@ -86,7 +87,8 @@ struct Odometry::Impl {
   void try_last_velocity(const LidarScan& scan, Prediction& prediction, ScanView& view, Registration& registration);
   void settle_motion(const LidarScan& scan, bool astray, const Prediction& prediction, ScanView& view,
                      Registration& registration);
-  void judge_prior(const LidarScan& scan, const SE3& T_odom_base, const Mat6& known);
+  void judge_prior(const LidarScan& scan, const SE3& T_odom_base, const Mat6& known,
+                   const Registration& registration);
   void restart_prior(Time stamp);
   void correct_prior(Time stamp, const SE3& T_odom_base, const Mat6& covariance, const Registration& registration);
   std::vector<Feature> features(const char* stage, const Cloud& points_lidar, std::optional<RingOrder>& order,
@@ -112,7 +114,7 @@ OdometryScan Odometry::Impl::add(const LidarScan& scan) {
   const SE3 T_odom_base = registration.T_odom_lidar * rig.lidar.T_base_lidar.inverse();
   const Mat6 covariance = moved_covariance(registration.covariance, rig.lidar.T_base_lidar.inverse());
   // 5 what the LiDAR has seen tells what the prior is worth, and corrects its biases and velocity
-  if (!registration.used_prior_only) judge_prior(scan, T_odom_base, covariance);
+  if (!registration.used_prior_only) judge_prior(scan, T_odom_base, covariance, registration);
   correct_prior(scan.stamp, T_odom_base, covariance, registration);
   prior->add_scan(scan.stamp, seen.points_lidar, T_odom_base);
   last_odom_base = StampedPose{scan.stamp, T_odom_base};
@@ -258,7 +260,8 @@ void Odometry::Impl::settle_motion(const LidarScan& scan, bool astray, const Pre
   }
 }
 
-void Odometry::Impl::judge_prior(const LidarScan& scan, const SE3& T_odom_base, const Mat6& known) {
+void Odometry::Impl::judge_prior(const LidarScan& scan, const SE3& T_odom_base, const Mat6& known,
+                                 const Registration& registration) {
   if (!last_odom_base) return;
   const Time last = last_odom_base->stamp;
   const auto step_from = [&](const SE3& predicted) { return Vec6((predicted.inverse() * T_odom_base).log()); };
@@ -266,7 +269,10 @@ void Odometry::Impl::judge_prior(const LidarScan& scan, const SE3& T_odom_base, 
   const SE3 by_velocity =
       last_odom_base->pose * SE3::exp(coasting.twist() * seconds_between(last, scan.stamp));
   const bool before = trust.believed();
-  trust.add(step_from(by_prior), prior->covariance(scan.stamp), known, step_from(by_velocity));
+  constexpr double kBlind_m = 0.05;  // a scan that sees a direction worse does not judge in it
+  const Eigen::SelfAdjointEigenSolver<Mat6> seen(registration.scan_information, Eigen::EigenvaluesOnly);
+  const bool blind = seen.eigenvalues()[0] < 1 / (kBlind_m * kBlind_m);
+  trust.add(step_from(by_prior), prior->covariance(scan.stamp), known, step_from(by_velocity), blind);
   if (!trust.believed()) ++health.prior_refused;
   if (before && !trust.believed())
     health.warnings.push_back(fmt::format(

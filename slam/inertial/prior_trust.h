@@ -9,8 +9,9 @@ namespace vsslam {
 class PriorTrust {
  public:
   /// A scan: the step from the predicted to the registered pose, what the prior claimed of it, and what was known
-  /// afterwards. `rival` is the same step of standing by the last velocity; both right perturbations of the base.
-  void add(const Vec6& shift, const Mat6& claimed, const Mat6& known, const Vec6& rival);
+  /// afterwards. `rival` is the same step of standing by the last velocity; both right perturbations of the base. A scan
+  /// that is `blind` in some direction cannot judge: there it followed whoever was believed.
+  void add(const Vec6& shift, const Mat6& claimed, const Mat6& known, const Vec6& rival, bool blind);
 
   /// Whether the prior is worth more than the last velocity. Refused when it is off by five times what it claims, scan
   /// after scan, and by more than the last velocity; taken back once it has been right for two seconds of scans.

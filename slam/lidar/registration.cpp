@@ -115,18 +115,45 @@ Linearised feigned(const std::vector<Match>& matches, const SE3& T_odom_lidar, c
   return sums;
 }
 
-// What of a problem's information to believe, as P with P M P, along the eigenvectors of M. Where a share s of it is
-// true, the best guess of a true row of J from the noisy one is s times it (Wiener), so s^2 is believed: next to nothing
-// in a direction that noise alone could have made, nearly all of what stands far above it.
-Mat6 believed_part(const Mat6& M, const Mat6& feigned) {
-  const Eigen::SelfAdjointEigenSolver<Mat6> solver(M);
-  const Mat6& V = solver.eigenvectors();
-  Vec6 share = Vec6::Zero();
-  for (int k = 0; k < 6; ++k) {
-    const double all = solver.eigenvalues()[k];
-    if (all > 0) share[k] = std::max(0.0, 1 - V.col(k).dot(feigned * V.col(k)) / all);
+// Eigenvectors of a problem's information M, its eigenvalues, and which share of each is no feint.
+struct Shares {
+  Mat6 vectors;
+  Vec6 values, share = Vec6::Zero();
+
+  Shares(const Mat6& M, const Mat6& feigned) {
+    const Eigen::SelfAdjointEigenSolver<Mat6> solver(M);
+    vectors = solver.eigenvectors();
+    values = solver.eigenvalues();
+    for (int k = 0; k < 6; ++k)
+      if (values[k] > 0)
+        share[k] = std::max(0.0, 1 - vectors.col(k).dot(feigned * vectors.col(k)) / values[k]);
   }
-  return V * share.asDiagonal() * V.transpose();
+  // P, so that P M P has the eigenvalues part_k M_k.
+  Mat6 root(const Vec6& part) const {
+    return vectors * part.cwiseMax(0.0).cwiseSqrt().asDiagonal() * vectors.transpose();
+  }
+};
+
+// What of the rows to believe: where a share s is true, the best guess of a true row from the noisy one is s times it
+// (Wiener).
+Mat6 true_part(const Shares& shares) {
+  return shares.root(shares.share.cwiseProduct(shares.share));
+}
+
+// What of the solution to believe: a row with noise draws it back by 1 - s of the way since the map's last key scan (as
+// errors in the regressor dilute any regression), on top of the variance 1 / (s^2 M_k) of the rows believed.
+Mat6 undrawn_part(const Shares& shares) {
+  constexpr double kWay_m = 0.5, kTurn_rad = 0.1;  // half of what parts two key scans
+  Vec6 part = Vec6::Zero();
+  for (int k = 0; k < 6; ++k) {
+    const double s = shares.share[k], information = shares.values[k];
+    if (s <= 0) continue;
+    const double away = std::hypot(kTurn_rad * shares.vectors.col(k).head<3>().norm(),
+                                   kWay_m * shares.vectors.col(k).tail<3>().norm());
+    const double drawn = (1 - s) * away;
+    part[k] = 1 / (1 / (s * s) + information * drawn * drawn);
+  }
+  return shares.root(part);
 }
 
 // How many of the matches fit, softly.
@@ -163,7 +190,7 @@ Registration register_scan(const std::vector<Feature>& features, const PosePrior
     const Weights weights(matches, map, range_sigma_m, robust_scale_m);
     const Linearised sums = linearise(matches, result.T_odom_lidar, weights);
     const Linearised noise = feigned(matches, result.T_odom_lidar, weights);
-    const Mat6 H_part = believed_part(sums.H, noise.H), A_part = believed_part(sums.A, noise.A);
+    const Mat6 H_part = true_part({sums.H, noise.H}), A_part = undrawn_part({sums.A, noise.A});
     result.information = analyse_information(H_part * sums.H * H_part);
     result.degeneracy = detect_degeneracy(result.information.H, result.correspondences, degeneracy);
     result.scan_information = A_part * sums.A * A_part;
