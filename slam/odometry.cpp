@@ -135,7 +135,12 @@ OdometryScan Odometry::Impl::add(const LidarScan& scan) {
   if (!report.converged) ++health.scans_unconverged;
   result.visual = prior->visual_report();
   // 6 far enough from the last key scan? then it enters the local map
-  if (lidar.wants_key(T_odom_base)) make_key(seen, result);
+  if (lidar.wants_key(T_odom_base)) {
+    make_key(seen, result);
+  } else if (!lidar.has_map()) {  // the scans so far held no planes: this one may
+    lidar.insert_key(features("features_of_key", seen.points_lidar, seen.order, config.odometry.map_voxel_m),
+                     T_odom_base, rig.lidar.T_base_lidar);
+  }
   return result;
 }
 
@@ -197,7 +202,8 @@ Registration Odometry::Impl::align(const ScanView& seen, const Prediction& predi
   const PosePrior around{prediction.T_odom_base * rig.lidar.T_base_lidar,
                          moved_covariance(prediction.covariance, rig.lidar.T_base_lidar)};
   if (lidar.has_map()) return lidar.align(seen.thin, around);
-  Registration first;  // it defines the frame
+  Registration first;  // the first scan defines the frame; without a map the others follow the prior
+  first.used_prior_only = last_odom_base || seen.thin.empty();
   first.T_odom_lidar = around.T_odom_lidar;
   first.covariance = around.covariance;
   first.converged = true;
@@ -218,7 +224,9 @@ void Odometry::Impl::try_last_velocity(const LidarScan& scan, Prediction& predic
       predict(scan, steady_motion(coasting.twist(), last_odom_base->stamp, scan.end), coasting.covariance(scan.stamp));
   ScanView other_seen = view(scan, other.motion);
   const Registration other_registration = align(other_seen, other);
-  if (other_registration.used_prior_only || other_registration.cost >= registration.cost) return;
+  if (other_registration.used_prior_only ||
+      (other_registration.misfit >= registration.misfit && other_registration.cost >= registration.cost))
+    return;
   prediction = other;
   seen = std::move(other_seen);
   registration = other_registration;
@@ -277,7 +285,7 @@ void Odometry::Impl::judge_prior(const LidarScan& scan, const SE3& T_odom_base, 
   if (before && !trust.believed())
     health.warnings.push_back(fmt::format(
         "prior: from {:.1f} s on it contradicts the LiDAR, and is not believed", scan.stamp.seconds()));
-  if (imu_units.compare(last, scan.stamp, last_odom_base->pose.inverse() * T_odom_base)) restart_prior(last);
+  imu_units.compare(last, scan.stamp, last_odom_base->pose.inverse() * T_odom_base);
 }
 
 // What it had learnt came from samples in the wrong unit.
@@ -331,6 +339,8 @@ Odometry::~Odometry() = default;
 void Odometry::add(const ImuSample& sample) {
   const ImuSample repaired = impl_->imu_units.repaired(sample);
   if (impl_->imu_units.repairs()) ++impl_->health.imu_repaired;
+  if (impl_->imu_units.newly_in_degrees() && impl_->last_odom_base)
+    impl_->restart_prior(impl_->last_odom_base->stamp);
   if (!impl_->last_odom_base) impl_->imu_before_start.add(repaired);
   impl_->prior->add(repaired);
 }
@@ -347,8 +357,6 @@ OdometryScan Odometry::add(const LidarScan& scan) {
 OdometryHealth Odometry::health() const {
   OdometryHealth health = impl_->health;
   health.repairs = impl_->imu_units.repairs_said();
-  const std::vector<std::string>& imu = impl_->imu_units.warnings();
-  health.warnings.insert(health.warnings.begin(), imu.begin(), imu.end());
   return health;
 }
 

@@ -13,7 +13,6 @@ namespace vsslam {
 namespace {
 
 constexpr Duration kScanSlack{5'000'000}, kExposureSlack{40'000'000};
-constexpr int kWeighed = 200;  // samples
 
 // Times of points are rounded: the last may be a little after the end.
 Time end_of(Time last, Time recorded, Duration slack) {
@@ -144,7 +143,6 @@ std::optional<RecordedSample> MessageRecording::sample_of(const Message& message
   };
   if (const auto* imu = std::get_if<ImuMessage>(&message.content)) {
     const ImuSample sample = imu_of_message(*imu);
-    weigh(sample);
     return ends_at_stamp(sample);
   }
   if (const auto* joints = std::get_if<JointStateMessage>(&message.content)) {
@@ -195,16 +193,6 @@ void MessageRecording::add_truth(const Message& message, Duration shift) {
 }
 
 // Some drivers give the specific force in g.
-void MessageRecording::weigh(const ImuSample& sample) {
-  if (accels_ == kWeighed || !sample.accel_mps2.allFinite()) return;
-  accel_sum_mps2_ += sample.accel_mps2.norm();
-  if (++accels_ < kWeighed) return;
-  const double mean_mps2 = accel_sum_mps2_ / kWeighed;
-  if (mean_mps2 < 5 || mean_mps2 > 15)
-    notes_.push_back(fmt::format("imu: the specific force is {:.2f} m/s^2 on average, not about 9.8{}",
-                                 mean_mps2, mean_mps2 > 0.5 && mean_mps2 < 2 ? ": given in g?" : ""));
-}
-
 std::vector<std::string> MessageRecording::notes() const {
   std::vector<std::string> notes = notes_;
   for (const std::string& note : clouds_.notes()) notes.push_back("lidar: " + note);

@@ -44,7 +44,6 @@ class MessageRecording final : public Recording {
   RecordedSample twist_sample(OdometryMessage odometry, Duration shift);
   Message stamped(Message message);
   void add_truth(const Message& message, Duration shift);
-  void weigh(const ImuSample& sample);
 
   std::unique_ptr<MessageReader> reader_;
   std::string file_;
@@ -59,8 +58,6 @@ class MessageRecording final : public Recording {
   std::map<std::string, uint64_t> read_;  // messages, by topic
   std::array<int64_t, kSensors> unreadable_{}, readable_{};
   std::vector<std::string> notes_;
-  double accel_sum_mps2_ = 0;
-  int accels_ = 0;
 };
 
 ImuSample imu_of_message(const ImuMessage& message);

@@ -70,7 +70,7 @@ void SensorDoctor::add(const ImuSample& sample) {
 
 void SensorDoctor::add(const WheelSample& sample) {
   wheel_clock_.add(sample.stamp);
-  wheels_.push_back(sample);
+  wheels_.push_back(wheel_turns_.unwrapped(sample));
   keep_recent(wheels_);
 }
 

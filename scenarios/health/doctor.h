@@ -12,6 +12,7 @@
 #include "scenarios/health/health.h"
 #include "scenarios/health/motion_agreement.h"
 #include "scenarios/health/sample_clock.h"
+#include "slam/inertial/wheel_track.h"
 #include "slam/scan_report.h"
 
 namespace vsslam {
@@ -56,6 +57,7 @@ class SensorDoctor {
   // Since the last scan, or so long as a comparison may reach.
   std::deque<ImuSample> imu_;
   std::deque<WheelSample> wheels_;
+  WheelTurns wheel_turns_;
   std::optional<StampedPose> last_odom_base_;  // of the last scan in which the LiDAR gave something
   ForceSum force_, force_at_rest_;
   MotionAgreement gyro_;

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace vsslam {
 
@@ -14,7 +15,10 @@ constexpr double kDegree = std::numbers::pi / 180;
 }  // namespace
 
 ImuSample ImuUnits::repaired(ImuSample sample) {
-  if (sample.gyro_radps.allFinite() && sample.accel_mps2.allFinite()) weigh(sample);
+  if (sample.gyro_radps.allFinite() && sample.accel_mps2.allFinite()) {
+    weigh(sample);
+    watch_rates(sample.gyro_radps.norm());
+  }
   if (in_g_) sample.accel_mps2 *= imu_.gravity_mps2;
   if (in_degrees_) sample.gyro_radps *= kDegree;
   constexpr size_t kKept = 4000;  // several scans at any rate
@@ -27,7 +31,7 @@ ImuSample ImuUnits::repaired(ImuSample sample) {
 // The first sample decides; by the time there are fifty it is known whether it was one of its kind.
 void ImuUnits::weigh(const ImuSample& sample) {
   constexpr int kEnough = 50;
-  constexpr double kLeast_g = 0.5, kMost_g = 2.0, kWeightless_mps2 = 0.3;
+  constexpr double kLeast_g = 0.5, kMost_g = 2.0;
   if (weighed_ == kEnough) return;
   const double force = sample.accel_mps2.norm();
   if (weighed_ == 0 && force > kLeast_g && force < kMost_g) in_g_ = true;
@@ -38,15 +42,25 @@ void ImuUnits::weigh(const ImuSample& sample) {
     repairs_said_.push_back(
         fmt::format("imu: the specific force is {:.2f} on average: given in g, taken times {:.5f} m/s^2", mean,
                     imu_.gravity_mps2));
-  } else if (in_g_) {
+  } else {
     in_g_ = false;
-  } else if (mean < kWeightless_mps2) {
-    warnings_.push_back(fmt::format(
-        "imu: the specific force is {:.2f} m/s^2 on average: without gravity? An IMU at rest feels 9.8", mean));
-  } else if (std::abs(mean - imu_.gravity_mps2) > 0.2 * imu_.gravity_mps2) {
-    warnings_.push_back(fmt::format("imu: the specific force is {:.2f} m/s^2 on average, not about {:.2f}", mean,
-                                    imu_.gravity_mps2));
   }
+}
+
+// Faster than gyroscopes in use can measure (450 degrees/s), for longer than a spike: no rate in rad/s.
+void ImuUnits::watch_rates(double rate) {
+  constexpr double kFastest_radps = 8;
+  constexpr int kSpike = 5;
+  if (in_degrees_) return;
+  too_fast_ = rate > kFastest_radps ? too_fast_ + 1 : 0;
+  if (too_fast_ < kSpike) return;
+  in_degrees_ = rates_judged_ = newly_in_degrees_ = true;
+  repairs_said_.push_back(
+      fmt::format("imu: the gyroscope gives {:.1f}, more than any measures in rad/s: taken as degrees/s", rate));
+}
+
+bool ImuUnits::newly_in_degrees() {
+  return std::exchange(newly_in_degrees_, false);
 }
 
 // Mean rates of neighbouring samples over the time between them, from `from` to `to`.
@@ -64,16 +78,15 @@ std::optional<Vec3> ImuUnits::turned(Time from, Time to) const {
   return sum;
 }
 
-bool ImuUnits::compare(Time from, Time to, const SE3& T_base_from_to) {
+void ImuUnits::compare(Time from, Time to, const SE3& T_base_from_to) {
   const std::optional<Vec3> gyro = turned(from, to);
   while (!recent_.empty() && recent_.front().stamp < from) recent_.pop_front();
-  if (!gyro || rates_judged_) return false;
+  if (!gyro || rates_judged_) return;
   const Vec3 lidar = imu_.T_base_imu.rotation.conjugate() * so3_log(T_base_from_to.rotation);
   dot_ += gyro->dot(lidar);
   lidar2_ += lidar.squaredNorm();
   gyro2_ += gyro->squaredNorm();
   judge_rates();
-  return rates_judged_ && in_degrees_;
 }
 
 std::optional<double> ImuUnits::gyro_scale() const {
@@ -84,22 +97,15 @@ std::optional<double> ImuUnits::gyro_scale() const {
 }
 
 void ImuUnits::judge_rates() {
-  constexpr double kAlike = 0.9, kTenth = 0.1;
+  constexpr double kAlike = 0.9, kFifth = 0.2;
   const std::optional<double> scale = gyro_scale();
   if (!scale) return;
   rates_judged_ = true;
   const double alike = dot_ / std::sqrt(lidar2_ * gyro2_);  // cosine between the two
-  if (alike > kAlike && std::abs(*scale * kDegree - 1) < 2 * kTenth) {
-    in_degrees_ = true;
+  if (alike > kAlike && std::abs(*scale * kDegree - 1) < kFifth) {
+    in_degrees_ = newly_in_degrees_ = true;
     repairs_said_.push_back(fmt::format(
         "imu: the gyroscope turns {:.1f} times as fast as the LiDAR: given in degrees, taken as such", *scale));
-  } else if (alike < kAlike) {
-    warnings_.push_back(fmt::format(
-        "imu: gyroscope and LiDAR disagree on how the robot turns (cosine {:.2f}): is the mount right, an axis "
-        "upside down?",
-        alike));
-  } else if (std::abs(*scale - 1) > kTenth) {
-    warnings_.push_back(fmt::format("imu: the gyroscope turns {:.2f} times as fast as the LiDAR", *scale));
   }
 }
 

@@ -8,7 +8,6 @@ namespace vsslam {
 
 namespace {
 
-// Of encoders on joints that are reported within a turn (-pi .. pi, or 0 .. 2 pi).
 void go_on(double last_rad, double& angle_rad, double& turns_rad) {
   constexpr double kTurn = 2 * std::numbers::pi;
   angle_rad += turns_rad;
@@ -21,14 +20,19 @@ void go_on(double last_rad, double& angle_rad, double& turns_rad) {
 
 }  // namespace
 
-void WheelTrack::add(WheelSample sample) {
+WheelSample WheelTurns::unwrapped(WheelSample sample) {
+  if (last_) {
+    go_on(last_->left_rad, sample.left_rad, left_turns_rad_);
+    go_on(last_->right_rad, sample.right_rad, right_turns_rad_);
+  }
+  last_ = sample;
+  return sample;
+}
+
+void WheelTrack::add(const WheelSample& sample) {
   if (!std::isfinite(sample.left_rad) || !std::isfinite(sample.right_rad)) return;
   if (!samples_.empty() && sample.stamp <= samples_.back().stamp) return;
-  if (!samples_.empty()) {
-    go_on(samples_.back().left_rad, sample.left_rad, left_turns_rad_);
-    go_on(samples_.back().right_rad, sample.right_rad, right_turns_rad_);
-  }
-  samples_.push_back(sample);
+  samples_.push_back(turns_.unwrapped(sample));
 }
 
 void WheelTrack::forget_before(Time stamp) {

@@ -15,13 +15,23 @@ struct WheelTravel {
   double yaw_rad = 0;
 };
 
+/// Angles of wheels whose joints are reported within a turn (-pi .. pi, or 0 .. 2 pi), going on where they wrap: no wheel
+/// turns half a turn from sample to sample.
+class WheelTurns {
+ public:
+  WheelSample unwrapped(WheelSample sample);
+
+ private:
+  std::optional<WheelSample> last_;  // unwrapped
+  double left_turns_rad_ = 0, right_turns_rad_ = 0;
+};
+
 class WheelTrack {
  public:
   WheelTrack(const WheelCalibration& wheels, double max_gap_s) : wheels_(wheels), max_gap_s_(max_gap_s) {}
 
-  /// Ignores samples that are not finite or not newer than the last. Angles that wrap at a turn go on: no wheel turns
-  /// half a turn from sample to sample.
-  void add(WheelSample sample);
+  /// Ignores samples that are not finite or not newer than the last. Angles may wrap at a turn.
+  void add(const WheelSample& sample);
   /// Keeps what interpolation at `stamp` needs.
   void forget_before(Time stamp);
 
@@ -34,7 +44,7 @@ class WheelTrack {
   WheelCalibration wheels_;
   double max_gap_s_;
   std::deque<WheelSample> samples_;
-  double left_turns_rad_ = 0, right_turns_rad_ = 0;  // wrapped so far
+  WheelTurns turns_;
 };
 
 }  // namespace vsslam

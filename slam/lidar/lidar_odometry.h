@@ -46,7 +46,7 @@ class LidarOdometry {
   /// Near the prior; where the prior may miss, or the scan fits much worse there than scans did lately, farther around
   /// it too.
   Registration align(const std::vector<Feature>& thin_features, const PosePrior& prior);
-  bool has_map() const { return keys_made_ > 0; }
+  bool has_map() const { return map_.plane_count() > 0; }
   /// Whether a scan fits so much worse than scans did lately that it may be lost.
   bool looks_lost(const Registration& registration) const;
   /// Far enough from the last key scan, or the first.

@@ -29,8 +29,9 @@ struct PlaneMapConfig {
   /// What a plane errs by beside the noise of its points: lasers that are biased, surfaces that are not flat, poses that
   /// bent the map. Over the plane's extent it is also a tilt.
   double plane_sigma_m = 0.003;
-  double max_normal_sigma_rad =
-      0.05;  ///< uncertainty of the normal, from the spread and number of the points
+  /// Uncertainty of the normal, from the spread and number of the points. What it feigns is taken away again
+  /// (registration.h), so narrow faces may speak.
+  double max_normal_sigma_rad = 0.1;
   /// A point whose chord leaves the plane by more lies on another surface. Automatic: 4 times the noise of the
   /// difference of two ranges.
   std::optional<double> max_chord_tilt_m;

@@ -83,20 +83,6 @@ TEST(MessageRecording, OrientationCountsWhereTheDeviceHasOne) {
   EXPECT_FALSE(imu_of_message(message).q_earth_imu);
 }
 
-TEST(MessageRecording, SaysWhenTheSpecificForceIsInG) {
-  for (const double accel : {9.81, 1.0}) {
-    std::vector<Message> messages;
-    for (int i = 0; i < 250; ++i) messages.push_back({"/imu", at(0.01 * i), imu(0.01 * i, accel)});
-    MessageRecording read = recording(messages);
-    while (read.next()) continue;
-    if (accel == 1.0) {
-      EXPECT_THAT(read.notes(), Contains(HasSubstr("given in g?")));
-    } else {
-      EXPECT_THAT(read.notes(), IsEmpty());
-    }
-  }
-}
-
 TEST(MessageRecording, StampsAreMovedToTheClockOfTheOthers) {
   MessageSurvey survey;
   survey.clocks.shifts["lidar"] = {{0, {}}, {1, Duration{5'000'000'000}}};
