@@ -60,6 +60,7 @@ struct Odometry::Impl {
   ImuTrack imu_before_start;
   std::optional<StampedPose> last_odom_base;  // of the last scan
   std::optional<LidarScan> first_scan;        // until it is known how the robot moved then
+  bool lost = false;                          // at the last scan
   OdometryHealth health;
 
   Impl(const SlamConfig& slam_config, const RigCalibration& rig_calibration, StageClock* stage_clock)
@@ -90,6 +91,7 @@ struct Odometry::Impl {
   void judge_prior(const LidarScan& scan, const SE3& T_odom_base, const Mat6& known,
                    const Registration& registration);
   void restart_prior(Time stamp);
+  void note_lost(Time stamp, const Registration& registration);
   void correct_prior(Time stamp, const SE3& T_odom_base, const Mat6& covariance, const Registration& registration);
   std::vector<Feature> features(const char* stage, const Cloud& points_lidar, std::optional<RingOrder>& order,
                                 double voxel_m) const;
@@ -117,7 +119,6 @@ OdometryScan Odometry::Impl::add(const LidarScan& scan) {
   if (!registration.used_prior_only) judge_prior(scan, T_odom_base, covariance, registration);
   correct_prior(scan.stamp, T_odom_base, covariance, registration);
   prior->add_scan(scan.stamp, seen.points_lidar, T_odom_base);
-  last_odom_base = StampedPose{scan.stamp, T_odom_base};
 
   OdometryScan result;
   result.end = scan.end;
@@ -133,6 +134,8 @@ OdometryScan Odometry::Impl::add(const LidarScan& scan) {
   report.used_prior_only = registration.used_prior_only;
   if (report.used_prior_only) ++health.scans_prior_only;
   if (!report.converged) ++health.scans_unconverged;
+  note_lost(scan.stamp, registration);
+  last_odom_base = StampedPose{scan.stamp, T_odom_base};
   result.visual = prior->visual_report();
   // 6 far enough from the last key scan? then it enters the local map
   if (lidar.wants_key(T_odom_base)) {
@@ -288,6 +291,16 @@ void Odometry::Impl::judge_prior(const LidarScan& scan, const SE3& T_odom_base, 
   imu_units.compare(last, scan.stamp, last_odom_base->pose.inverse() * T_odom_base);
 }
 
+// Of scans that fit nowhere; those in a row are one span.
+void Odometry::Impl::note_lost(Time stamp, const Registration& registration) {
+  const bool was_lost = std::exchange(lost, lidar.has_map() && last_odom_base && lidar.looks_lost(registration));
+  if (!lost) return;
+  if (!was_lost)
+    health.lost.push_back({stamp, stamp, 0, registration.used_prior_only ? "too few planes" : "fits badly"});
+  health.lost.back().end = stamp;
+  ++health.lost.back().scans;
+}
+
 // What it had learnt came from samples in the wrong unit.
 void Odometry::Impl::restart_prior(Time stamp) {
   prior = make_prior(config, rig, clock);
@@ -356,6 +369,7 @@ OdometryScan Odometry::add(const LidarScan& scan) {
 
 OdometryHealth Odometry::health() const {
   OdometryHealth health = impl_->health;
+  health.range_sigma_m = impl_->lidar.range_sigma_m();
   health.repairs = impl_->imu_units.repairs_said();
   return health;
 }

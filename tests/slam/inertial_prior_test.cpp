@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "slam/inertial/gyro_bias.h"
 #include "slam/inertial/imu_track.h"
@@ -156,6 +157,24 @@ TEST(WheelTrack, TurnsByTheEffectiveTrack) {
   EXPECT_NEAR(track.at(ms(10))->forward_m, 0.075, 1e-12);
   EXPECT_NEAR(track.at(ms(30))->forward_m, 0.225, 1e-12);  // continued
   EXPECT_FALSE(track.at(ms(80)).has_value());
+}
+
+TEST(WheelTrack, GoesOnWhereAnglesWrap) {
+  WheelCalibration wheels;
+  WheelTrack whole(wheels, 0.05), wrapped(wheels, 0.05);
+  for (int i = 0; i <= 200; ++i) {
+    WheelSample sample;
+    sample.stamp = ms(10 * i);
+    sample.left_rad = 0.11 * i;
+    sample.right_rad = -0.13 * i;
+    whole.add(sample);
+    sample.left_rad = std::remainder(sample.left_rad, 2 * std::numbers::pi);
+    sample.right_rad = std::remainder(sample.right_rad, 2 * std::numbers::pi);
+    wrapped.add(sample);
+    if (i < 2) continue;
+    EXPECT_NEAR(wrapped.at(ms(10 * i))->forward_m, whole.at(ms(10 * i))->forward_m, 1e-9) << i;
+    EXPECT_NEAR(wrapped.at(ms(10 * i))->yaw_rad, whole.at(ms(10 * i))->yaw_rad, 1e-9) << i;
+  }
 }
 
 TEST(GyroBias, ConvergesInObservedDirectionsOnly) {

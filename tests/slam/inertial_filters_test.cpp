@@ -1,0 +1,81 @@
+#include <gtest/gtest.h>
+
+#include "slam/inertial/fix_history.h"
+#include "slam/inertial/pose_covariance.h"
+#include "slam/inertial/prior_trust.h"
+
+namespace vsslam {
+namespace {
+
+Time ms(int64_t t) {
+  return Time{t * 1'000'000};
+}
+
+// The update of a Kalman filter that measures the pose with covariance R is the same, whatever R.
+TEST(ConditionOnPose, AgreesWithAKalmanUpdate) {
+  using Mat8 = Eigen::Matrix<double, 8, 8>;
+  Mat8 root = Mat8::NullaryExpr([](Eigen::Index r, Eigen::Index c) { return std::sin(1.0 + 3.1 * double(r) + 1.7 * double(c)); });
+  const Mat8 P = root * root.transpose() + Mat8::Identity();
+  const Mat6 R = 0.3 * Mat6::Identity();
+  Vec6 innovation;
+  innovation << 0.1, -0.2, 0.3, 0.4, 0.5, -0.6;
+  const Mat6 S = P.topLeftCorner<6, 6>() + R;
+  const Eigen::Matrix<double, 8, 6> K = P.leftCols<6>() * S.inverse();
+  const Eigen::Matrix<double, 8, 1> expected = K * innovation;
+  const Mat8 expected_P = P - K * P.topRows<6>();
+
+  Mat8 conditioned = P;
+  const auto change = condition_on_pose<8>(conditioned, Vec6(expected.head<6>()), Mat6(expected_P.topLeftCorner<6, 6>()));
+  EXPECT_LT((change - expected).norm(), 1e-9);
+  EXPECT_LT((conditioned - expected_P).norm(), 1e-9);
+}
+
+TEST(FixHistory, KnowsTheVelocityAfterTwoFixesFromAStartInMotion) {
+  FixHistory history{InertialConfig{}};
+  const auto at = [](double t) { return SE3(Quat::Identity(), {9 * t, 0, 0}); };
+  history.add({.stamp = ms(0), .T_odom_base = at(0)});
+  EXPECT_GT(std::sqrt(history.covariance(ms(100))(3, 3)), 0.9);  // a third of 30 m/s, in a tenth of a second
+  history.add({.stamp = ms(100), .T_odom_base = at(0.1)});
+  EXPECT_NEAR(history.twist()[3], 9, 0.01);
+  EXPECT_LT(std::sqrt(history.covariance(ms(200))(3, 3)), 0.03);
+}
+
+// Undistortion by a wrong velocity moves a pose back by half of what the scan lasts: e_k+1 = -(y_k) / 2.
+TEST(FixHistory, DoesNotRingWithTheUndistortion) {
+  FixHistory history{InertialConfig{}};
+  double error_m = 0.02, worst_late_m = 0;
+  for (int k = 0; k < 60; ++k) {
+    history.add({.stamp = ms(100 * k), .T_odom_base = SE3(Quat::Identity(), {0.1 * k + error_m, 0, 0})});
+    error_m = k == 0 ? 0 : -0.5 * (history.twist()[3] - 1) * 0.1;
+    if (k > 40) worst_late_m = std::max(worst_late_m, std::abs(error_m));
+  }
+  EXPECT_LT(worst_late_m, 1e-5);
+}
+
+TEST(PriorTrust, RefusesWhatIsFarOffAndTakesItBackWhenItIsRight) {
+  PriorTrust trust;
+  const Mat6 claimed = 1e-4 * Mat6::Identity(), known = 1e-6 * Mat6::Identity();
+  Vec6 wrong = Vec6::Zero(), right = Vec6::Zero();
+  wrong[3] = 0.3;
+  right[3] = 0.005;
+  for (int i = 0; i < 3; ++i) trust.add(right, claimed, known, right, false);
+  EXPECT_TRUE(trust.believed());
+  for (int i = 0; i < 10; ++i) trust.add(wrong, claimed, known, right, true);  // blind scans do not judge
+  EXPECT_TRUE(trust.believed());
+  for (int i = 0; i < 10; ++i) trust.add(wrong, claimed, known, right, false);
+  EXPECT_FALSE(trust.believed());
+  for (int i = 0; i < 20; ++i) trust.add(right, claimed, known, right, false);
+  EXPECT_TRUE(trust.believed());
+}
+
+TEST(PriorTrust, WidensAPriorThatIsMerelyWorseThanItClaims) {
+  PriorTrust trust;
+  Vec6 off = Vec6::Zero();
+  off[3] = 0.04;  // four sigma, of one direction of six
+  for (int i = 0; i < 30; ++i) trust.add(off, 1e-4 * Mat6::Identity(), 1e-6 * Mat6::Identity(), off, false);
+  EXPECT_TRUE(trust.believed());
+  EXPECT_NEAR(trust.inflation(), 16.0 / 6, 0.1);
+}
+
+}  // namespace
+}  // namespace vsslam
