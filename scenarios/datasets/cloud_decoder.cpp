@@ -8,6 +8,7 @@
 #include <cstring>
 #include <initializer_list>
 #include <numbers>
+#include <utility>
 
 #include "core/errors.h"
 
@@ -18,6 +19,7 @@ namespace {
 using Field = PointCloudMessage::Field;
 
 constexpr double kLongestScan_s = 10;
+constexpr double kUsualTurn_s = 0.1;  // of the first scan, before a second tells
 
 size_t bytes_of(uint8_t datatype) {
   switch (datatype) {
@@ -131,15 +133,15 @@ LidarScan CloudDecoder::decode(const PointCloudMessage& cloud, std::string_view 
   read_points(cloud, layout, scan, rings, times);
   if (layout.ring == nullptr) {
     note("no field of rings: derived from the points' elevation");
-    rings_.fill(scan.points);
-    scan.rings_known = false;
+    scan.rings_known = rings_.fill(scan.points);
   } else {
     settle_rings(scan, rings, times);
   }
-  if (last_stamp_)
-    if (const double since_s = seconds_between(*last_stamp_, scan.stamp); since_s > 0.02 && since_s < 0.5)
-      period_s_ = since_s;
-  if (options_.parts) period_s_ = options_.parts->turn_s;
+  if (options_.parts) {
+    turn_s_ = options_.parts->turn_s;
+  } else if (last_stamp_) {
+    learn_turn(seconds_between(*last_stamp_, scan.stamp));
+  }
   last_stamp_ = scan.stamp;
   if (options_.undistorted) {
     note("points count as undistorted: all as fired at the stamp");
@@ -187,8 +189,7 @@ void CloudDecoder::settle_rings(LidarScan& scan, const std::vector<double>& ring
                                 std::vector<double>& times) {
   if (const auto fault = fault_of_rings(scan.points, rings, options_.rings)) {
     note(fmt::format("the field of rings says nothing: {}: derived from the points' elevation", *fault));
-    rings_.fill(scan.points);
-    scan.rings_known = false;
+    scan.rings_known = rings_.fill(scan.points);
     return;
   }
   size_t kept = 0;
@@ -266,8 +267,28 @@ double CloudDecoder::zero_of_times(Time stamp, double first_s, double last_s) {
   return first_s;
 }
 
+// A turn lasts as long as most scans are apart, if that is what scanners take (4 to 25 Hz). Of key scans picked from a
+// drive it says nothing.
+void CloudDecoder::learn_turn(double since_s) {
+  constexpr double kShortest_s = 0.04, kLongest_s = 0.25, kAlike = 1.2;
+  if (since_s < kShortest_s) return;
+  if (since_s * kAlike < turn_s_) others_ += std::exchange(alike_, 0);  // those before were several turns
+  if (since_s < turn_s_ * kAlike) {
+    turn_s_ = std::min(turn_s_, since_s);
+    ++alike_;
+  } else {
+    ++others_;
+  }
+  turns_ = turn_s_ <= kLongest_s && alike_ > others_;
+}
+
 void CloudDecoder::derive_times(LidarScan& scan) {
-  times_from_azimuth(scan, period_s_);
+  if (!turns_) {
+    note("scans at no regular rate: all points count as fired at the stamp");
+    for (LidarPoint& p : scan.points) p.time_s = 0;
+    return;
+  }
+  times_from_azimuth(scan, std::isfinite(turn_s_) ? turn_s_ : kUsualTurn_s);
 }
 
 void times_from_azimuth(LidarScan& scan, double period_s) {

@@ -1,6 +1,7 @@
 // Point clouds of other people's drivers as scans: finds out what each field means, once, and says so.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -43,6 +44,7 @@ class CloudDecoder {
   void settle_rings(LidarScan& scan, const std::vector<double>& rings, std::vector<double>& times);
   double zero_of_times(Time stamp, double first_s, double last_s);
   void set_times(LidarScan& scan, std::vector<double>& times, bool seconds_as_float, std::string_view place);
+  void learn_turn(double since_s);
   void derive_times(LidarScan& scan);
   double unit_s(double span) const;
   void note(const std::string& text);
@@ -54,7 +56,9 @@ class CloudDecoder {
   std::optional<bool> running_;         // do the points' times go on from cloud to cloud?
   std::optional<Time> last_header_;
   std::optional<Time> last_stamp_;
-  double period_s_ = 0.1;
+  double turn_s_ = std::numeric_limits<double>::infinity();  // the shortest time between scans
+  int alike_ = 0, others_ = 0;                                // intervals about as long, and longer ones
+  bool turns_ = true;
   std::vector<std::string> notes_;
 };
 

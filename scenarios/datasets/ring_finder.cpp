@@ -97,16 +97,18 @@ void RingFinder::learn(const std::vector<LidarPoint>& points) {
     if (static_cast<int>(table.size()) == rings_ && fits(table, seen)) elevations_rad_ = table;
   }
   if (elevations_rad_.empty()) elevations_rad_ = gathered(seen);
-  if (!elevations_rad_.empty()) return;
+  clean_ = !elevations_rad_.empty();
+  if (clean_) return;
   const auto [low, high] = std::minmax_element(seen.begin(), seen.end());
   for (int ring = 0; ring < rings_; ++ring)
     elevations_rad_.push_back(*low + (*high - *low) * ring / std::max(1, rings_ - 1));
 }
 
-void RingFinder::fill(std::vector<LidarPoint>& points) {
-  if (points.empty()) return;
+bool RingFinder::fill(std::vector<LidarPoint>& points) {
+  if (points.empty()) return false;
   if (elevations_rad_.empty()) learn(points);
   for (LidarPoint& p : points) p.ring = static_cast<uint16_t>(nearest(elevations_rad_, elevation_rad(p)));
+  return clean_;
 }
 
 }  // namespace vsslam

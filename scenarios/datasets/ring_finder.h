@@ -21,13 +21,14 @@ std::optional<std::string> fault_of_rings(const std::vector<LidarPoint>& points,
 class RingFinder {
  public:
   explicit RingFinder(int rings) : rings_(rings) {}
-  /// Fills `ring`; 0 is the lowest.
-  void fill(std::vector<LidarPoint>& points);
+  /// Fills `ring`; 0 is the lowest. False if the rings are only spread evenly: then they say nothing of the lasers.
+  bool fill(std::vector<LidarPoint>& points);
 
  private:
   void learn(const std::vector<LidarPoint>& points);
 
   int rings_;
+  bool clean_ = true;
   std::vector<double> elevations_rad_;  // ascending, one per ring; empty: nothing learnt yet
 };
 

@@ -55,7 +55,7 @@ TEST(ImuUnits, RatesSlowerThanThatAreComparedWithTheLidar) {
   for (const double factor : {1.0, 57.3}) {
     ImuUnits units(ImuCalibration{});
     constexpr double kRate_radps = 0.1;
-    for (int i = 0; i <= 300; ++i) {
+    for (int i = 0; i <= 600; ++i) {
       units.repaired(sample_at(i, {0, 0, factor * kRate_radps}, {0, 0, 9.8}));
       if (i > 0 && i % 10 == 0)
         units.compare(Time{10'000'000 * int64_t{i - 10}}, Time{10'000'000 * int64_t{i}},
