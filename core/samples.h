@@ -24,7 +24,7 @@ struct LidarScan {
   Time stamp;  ///< time of the first firing of the revolution
   Time end;    ///< time of the last firing
   std::vector<LidarPoint> points;
-  bool rings_known = true;  ///< false: `ring` is a guess from elevation, or says nothing
+  bool rings_known = true;  ///< false: `ring` says nothing of the lasers
   bool times_known = true;  ///< false: every time_s is 0 or invented
 };
 

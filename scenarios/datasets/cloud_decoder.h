@@ -15,8 +15,8 @@
 namespace vsslam {
 
 /// Clouds of one topic, in order. Needed: x, y, z. Used if there: an intensity; the ring, if it makes sense, else derived
-/// from elevation (then rings_known is false); the time of each point, else derived from azimuth (the LiDAR turns
-/// clockwise, seen from above; then times_known is false).
+/// from elevation (rings_known tells whether the lasers separate there); the time of each point, else derived from azimuth
+/// (the LiDAR turns clockwise, seen from above; then times_known is false) if scans come as regularly as a scanner turns.
 ///
 /// Times may be seconds, milliseconds, microseconds or nanoseconds (told apart by how long the scan lasts), counted from
 /// the stamp, from 1970 or from anywhere: times that go on from cloud to cloud as the stamps do are not counted from them.

@@ -183,7 +183,7 @@ TEST(CloudDecoder, RingsThatSayNothingFollowFromTheElevation) {
     for (const auto& ring_of : wrong) {
       std::string note;
       const LidarScan scan = with_rings(lasers, lasers, ring_of, note);
-      EXPECT_TRUE(scan.rings_known);  // the elevations lie on a VLP-16's
+      EXPECT_TRUE(scan.rings_known);  // the elevations gather cleanly
       EXPECT_THAT(note, HasSubstr("the field of rings says nothing"));
       ASSERT_EQ(scan.points.size(), static_cast<size_t>(200 * lasers));
       for (const LidarPoint& p : scan.points)
