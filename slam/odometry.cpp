@@ -192,8 +192,8 @@ ScanView Odometry::Impl::view(const LidarScan& scan, const MotionPath& motion) {
   }
   if (scan.rings_known) {
     seen.order.emplace(scan, seen.points_lidar, range_step_m(lidar.range_sigma_m(), config.odometry.features));
-    lidar.listen(measured_range_sigma_m(*seen.order));
-  } else {
+    if (lidar.listens()) lidar.listen(measured_range_sigma_m(*seen.order));
+  } else if (lidar.listens()) {
     lidar.listen(measured_surface_sigma_m(seen.points_lidar, config.odometry.voxel_m, config.odometry.features));
   }
   seen.thin = features("features", seen.points_lidar, seen.order, config.odometry.voxel_m);

@@ -22,7 +22,7 @@ ImuSample ImuUnits::repaired(ImuSample sample) {
   if (in_g_) sample.accel_mps2 *= imu_.gravity_mps2;
   if (in_degrees_) sample.gyro_radps *= kDegree;
   constexpr size_t kKept = 4000;  // several scans at any rate
-  if (sample.gyro_radps.allFinite() && (recent_.empty() || sample.stamp > recent_.back().stamp))
+  if (!rates_judged_ && sample.gyro_radps.allFinite() && (recent_.empty() || sample.stamp > recent_.back().stamp))
     recent_.push_back(sample);
   if (recent_.size() > kKept) recent_.pop_front();
   return sample;
@@ -79,9 +79,10 @@ std::optional<Vec3> ImuUnits::turned(Time from, Time to) const {
 }
 
 void ImuUnits::compare(Time from, Time to, const SE3& T_base_from_to) {
+  if (rates_judged_) return;
   const std::optional<Vec3> gyro = turned(from, to);
   while (!recent_.empty() && recent_.front().stamp < from) recent_.pop_front();
-  if (!gyro || rates_judged_) return;
+  if (!gyro) return;
   const Vec3 lidar = imu_.T_base_imu.rotation.conjugate() * so3_log(T_base_from_to.rotation);
   dot_ += gyro->dot(lidar);
   lidar2_ += lidar.squaredNorm();

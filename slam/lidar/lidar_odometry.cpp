@@ -21,9 +21,8 @@ void LidarOdometryConfig::fields(Fields& f) {
 // The median over the first scans: a scan's own figure is good to a percent where it sees walls, but leaves and grass
 // look like noise, and the first scan may see little else.
 void LidarOdometry::listen(double scan_sigma_m) {
-  constexpr size_t kScans = 10;
   constexpr double kLeast_m = 0.003;  // ranges are given in steps of 2-4 mm, and no scanner is better
-  if (heard_m_.size() == kScans || scan_sigma_m <= 0) return;
+  if (!listens() || scan_sigma_m <= 0) return;
   heard_m_.push_back(scan_sigma_m);
   std::vector<double> sorted = heard_m_;
   std::sort(sorted.begin(), sorted.end());

@@ -40,6 +40,8 @@ class LidarOdometry {
 
   /// How the ranges of the sensor scatter: what the last scans show, or what was set.
   double range_sigma_m() const { return config_.range_sigma_m.value_or(range_sigma_m_); }
+  /// Whether another scan could still tell how noisy the sensor is.
+  bool listens() const { return heard_m_.size() < kScansHeard && !config_.range_sigma_m; }
   /// Learns from a scan how noisy the sensor is.
   void listen(double scan_sigma_m);
 
@@ -57,6 +59,8 @@ class LidarOdometry {
   void replace_first_key(const std::vector<Feature>& features, const SE3& T_odom_base, const SE3& T_base_lidar);
 
  private:
+  static constexpr size_t kScansHeard = 10;
+
   LidarOdometryConfig config_;
   PlaneMap map_;
   std::deque<std::vector<MapPoint>> keys_odom_;  // in the map
