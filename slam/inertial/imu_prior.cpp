@@ -10,8 +10,6 @@ namespace vsslam {
 
 namespace {
 
-using Mat15 = Eigen::Matrix<double, 15, 15>;
-
 ImuCalibration believed(ImuCalibration imu, double noise_factor) {
   imu.gyro_noise_radps_rthz *= noise_factor;
   imu.accel_noise_mps2_rthz *= noise_factor;
@@ -22,39 +20,48 @@ double square(double x) {
   return x * x;
 }
 
+}  // namespace
+
 // Derivative of the state after a preintegrated motion by the state before it (Forster et al. 2017, section VI); with
 // position perturbed in the body's frame.
-Mat15 transition(const ImuPreintegration& motion, const Mat3& R_before, const Mat3& R_after) {
+ImuPrior::Mat18 ImuPrior::transition(const ImuPreintegration& motion, const Mat3& R_before, const Mat3& R_after) {
   const double dt = motion.dt_s();
   const Mat3 R_j_i = motion.delta_R().toRotationMatrix().transpose();
   const Mat3 R_j_odom = R_after.transpose();
   const auto& J = motion.bias_jacobian();
-  Mat15 F = Mat15::Identity();
+  Mat18 F = Mat18::Identity();
   F.block<3, 3>(0, 0) = R_j_i;
   F.block<3, 6>(0, 9) = J.topRows<3>();
   F.block<3, 3>(3, 0) = -R_j_i * hat(motion.delta_p());
   F.block<3, 3>(3, 3) = R_j_i;
   F.block<3, 3>(3, 6) = dt * R_j_odom;
   F.block<3, 6>(3, 9) = R_j_i * J.bottomRows<3>();
+  F.block<3, 3>(3, 15) = 0.5 * dt * dt * R_j_odom;
+  F.block<3, 3>(6, 15) = dt * Mat3::Identity();
   F.block<3, 3>(6, 0) = -R_before * hat(motion.delta_v());
   F.block<3, 6>(6, 9) = R_before * J.middleRows<3>(3);
   return F;
 }
 
 // Of the motion's own noise, in the errors of the state after it.
-Mat15 motion_noise(const ImuPreintegration& motion, const Mat3& R_before, const ImuCalibration& imu) {
+ImuPrior::Mat18 ImuPrior::motion_noise(const ImuPreintegration& motion, const Mat3& R_before, const ImuCalibration& imu) {
   const Mat3 R_j_i = motion.delta_R().toRotationMatrix().transpose();
-  Eigen::Matrix<double, 15, 9> G = Eigen::Matrix<double, 15, 9>::Zero();
+  Eigen::Matrix<double, kStates, 9> G = Eigen::Matrix<double, kStates, 9>::Zero();
   G.block<3, 3>(0, 0).setIdentity();
   G.block<3, 3>(6, 3) = R_before;
   G.block<3, 3>(3, 6) = R_j_i;
-  Mat15 Q = G * motion.covariance() * G.transpose();
+  Mat18 Q = G * motion.covariance() * G.transpose();
   Q.diagonal().segment<3>(9).array() += square(imu.gyro_bias_walk_radps2_rthz) * motion.dt_s();
-  Q.diagonal().tail<3>().array() += square(imu.accel_bias_walk_mps3_rthz) * motion.dt_s();
+  Q.diagonal().segment<3>(12).array() += square(imu.accel_bias_walk_mps3_rthz) * motion.dt_s();
   return Q;
 }
 
-}  // namespace
+void ImuPrior::State::add_to_rest(const Vec18& change) {
+  v_odom += change.segment<3>(6);
+  bias.gyro_radps += change.segment<3>(9);
+  bias.accel_mps2 += change.segment<3>(12);
+  gravity_odom += change.tail<3>();
+}
 
 ImuPrior::ImuPrior(const InertialConfig& config, const RigCalibration& rig)
     : config_(config),
@@ -63,43 +70,41 @@ ImuPrior::ImuPrior(const InertialConfig& config, const RigCalibration& rig)
       fixes_(config) {}
 
 void ImuPrior::start(const InitialState& state) {
-  constexpr double kRestSpeed_mps = 1e-3, kYaw_rad = 1e-4;  // yaw 0 and the place define odom
+  constexpr double kRestSpeed_mps = 1e-3;
   constexpr double kMovingTilt_rad = 0.1;  // level by the mean specific force, while braking with 1 m/s^2
   fixes_.start(state.at_rest);
   start_bias_ = {state.gyro_bias_radps, state.accel_bias_mps2};
   gyro_bias_sigma_radps_ = state.gyro_bias_sigma_radps;
-  state_.T_odom_imu = state.T_odom_base * sheet_.T_base_imu;
-  state_.bias = start_bias_;
   const double bias = config_.accel_bias_sigma_mps2, g = sheet_.gravity_mps2;
   const double tilt = state.at_rest ? bias / g : kMovingTilt_rad;
-  const Mat3 R_imu_odom = state_.T_odom_imu.matrix3().transpose();
-  const Mat3 tilts = R_imu_odom * Vec3(square(tilt), square(tilt), square(kYaw_rad)).asDiagonal() *
-                     R_imu_odom.transpose();
+  state_.T_odom_imu = state.T_odom_base * sheet_.T_base_imu;
+  state_.bias = start_bias_;
+  state_.gravity_odom = {0, 0, -g};
   state_.P.setZero();
-  state_.P.topLeftCorner<3, 3>() = tilts;
-  state_.P.diagonal().segment<3>(3).setConstant(1e-8);
+  state_.P.diagonal().head<6>().setConstant(1e-8);  // the first pose defines odom
   state_.P.diagonal().segment<3>(6).setConstant(
       square(state.at_rest ? kRestSpeed_mps : config_.max_speed_mps / 3));
   state_.P.diagonal().segment<3>(9).setConstant(square(gyro_bias_sigma_radps_));
-  state_.P.bottomRightCorner<3, 3>().diagonal().setConstant(square(bias));
+  state_.P.diagonal().segment<3>(12).setConstant(square(bias));
+  state_.P.diagonal().segment<2>(15).setConstant(square(tilt * g));
   rest_.reset();
   if (!state.at_rest) return;
-  rest_ = ImuBias{state.gyro_bias_radps, R_imu_odom * Vec3(0, 0, g) + state.accel_bias_mps2};
+  // Up was found from the specific force f = b - R' gravity: a level bias of b is a tilt of b / g.
+  const Mat3 R_imu_odom = state_.T_odom_imu.matrix3().transpose();
+  rest_ = ImuBias{state.gyro_bias_radps, state.accel_bias_mps2 - R_imu_odom * state_.gravity_odom};
   rest_scans_ = 1;
-  // At rest up was found from the specific force: f = g R' e_z + b, so a level bias of b is a tilt of b / g.
-  const Mat3 force = hat(R_imu_odom * Vec3(0, 0, g));  // d(R' g)/d(rotation)
+  Eigen::Matrix<double, 3, kStates> H = Eigen::Matrix<double, 3, kStates>::Zero();
+  H.middleCols<3>(12).setIdentity();
+  H.rightCols<3>() = -R_imu_odom;
   const Mat3 noise = square(0.02 * bias) * Mat3::Identity();
-  Eigen::Matrix<double, 3, 15> H = Eigen::Matrix<double, 3, 15>::Zero();
-  H.leftCols<3>() = force;
-  H.rightCols<3>().setIdentity();
-  const Eigen::Matrix<double, 15, 3> K =
+  const Eigen::Matrix<double, kStates, 3> K =
       (H * state_.P * H.transpose() + noise).ldlt().solve(H * state_.P).transpose();
   state_.P -= K * H * state_.P;
   state_.P = 0.5 * (state_.P + state_.P.transpose()).eval();
 }
 
 std::optional<ImuPrior::State> ImuPrior::predict(Time begin, Time end, MotionPath* path) const {
-  const Vec3 gravity_odom(0, 0, -sheet_.gravity_mps2);
+  const Vec3& gravity_odom = state_.gravity_odom;
   const SE3& T_base_imu = sheet_.T_base_imu;
   ImuPreintegration motion(sheet_, state_.bias);
   auto before = imu_.at(begin);
@@ -125,7 +130,7 @@ std::optional<ImuPrior::State> ImuPrior::predict(Time begin, Time end, MotionPat
       path->append(stamp, T_base_imu * state_.T_odom_imu.inverse() * state.T_odom_imu * T_base_imu.inverse());
   }
   const Mat3 R = q.toRotationMatrix();
-  const Mat15 F = transition(motion, R, state.T_odom_imu.matrix3());
+  const Mat18 F = transition(motion, R, state.T_odom_imu.matrix3());
   state.P = F * state_.P * F.transpose() + motion_noise(motion, R, sheet_);
   return state;
 }
@@ -148,16 +153,16 @@ Mat6 ImuPrior::covariance(Time end) const {
 
 // After a gap, or a state gone wrong: the velocity of the fixes, the biases as at the start.
 void ImuPrior::restart(const OdometryFix& fix, double dt_s) {
-  const Mat3 tilts = state_.P.topLeftCorner<3, 3>();
+  const Mat3 gravity = state_.P.bottomRightCorner<3, 3>();
   const double speed_sigma_mps = config_.unknown_accel_mps2 * std::max(dt_s, 0.1);
   state_.v_odom = fix.T_odom_base.rotation * fixes_.twist().tail<3>();
   state_.bias = start_bias_;
   state_.P.setZero();
   state_.P.topLeftCorner<6, 6>() = moved_covariance(fix.covariance, sheet_.T_base_imu);
-  state_.P.topLeftCorner<3, 3>() += tilts;
   state_.P.diagonal().segment<3>(6).setConstant(square(speed_sigma_mps));
   state_.P.diagonal().segment<3>(9).setConstant(square(gyro_bias_sigma_radps_));
-  state_.P.diagonal().tail<3>().setConstant(square(config_.accel_bias_sigma_mps2));
+  state_.P.diagonal().segment<3>(12).setConstant(square(config_.accel_bias_sigma_mps2));
+  state_.P.bottomRightCorner<3, 3>() = gravity;
 }
 
 // Quiet, not known to move, and feeling what it felt at the start, at rest: at constant speed an IMU is as quiet, and a
@@ -190,15 +195,13 @@ bool ImuPrior::stands(Time from, Time to) {
 void ImuPrior::stand_still() {
   constexpr double kSigma_mps = 2e-3;
   const Mat3 S = state_.P.block<3, 3>(6, 6) + kSigma_mps * kSigma_mps * Mat3::Identity();
-  Eigen::Matrix<double, 15, 3> K = S.ldlt().solve(state_.P.middleRows<3>(6)).transpose();
+  Eigen::Matrix<double, kStates, 3> K = S.ldlt().solve(state_.P.middleRows<3>(6)).transpose();
   K.topRows<6>().setZero();
-  const Eigen::Matrix<double, 15, 1> change = -K * state_.v_odom;
-  Mat15 rest = Mat15::Identity();
+  const Vec18 change = -K * state_.v_odom;
+  Mat18 rest = Mat18::Identity();
   rest.middleCols<3>(6) -= K;
   state_.P = rest * state_.P * rest.transpose() + kSigma_mps * kSigma_mps * K * K.transpose();
-  state_.v_odom += change.segment<3>(6);
-  state_.bias.gyro_radps += change.segment<3>(9);
-  state_.bias.accel_mps2 += change.tail<3>();
+  state_.add_to_rest(change);
 }
 
 void ImuPrior::correct(const OdometryFix& fix) {
@@ -211,9 +214,7 @@ void ImuPrior::correct(const OdometryFix& fix) {
       const auto change =
           condition_on_pose(predicted->P, shift, moved_covariance(fix.covariance, sheet_.T_base_imu));
       state_ = *predicted;
-      state_.v_odom += change.segment<3>(6);
-      state_.bias.gyro_radps += change.segment<3>(9);
-      state_.bias.accel_mps2 += change.tail<3>();
+      state_.add_to_rest(change);
     } else {
       state_.T_odom_imu = T_odom_imu;
       restart(fix, seconds_between(last->stamp, fix.stamp));

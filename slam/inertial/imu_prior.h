@@ -1,5 +1,7 @@
 // The prior `imu`: an error-state Kalman filter of the IMU's pose, velocity and biases (Sola 2017, arXiv 1711.02508)
-// that preintegration carries from scan to scan and the registered scans correct.
+// that preintegration carries from scan to scan and the registered scans correct. Where up is in odom is a part of the
+// state, as in FAST-LIO2: odom is where the first scan was, and what that was tilted by is not known better than the
+// accelerometer's bias.
 #pragma once
 
 #include "slam/inertial/fix_history.h"
@@ -21,15 +23,22 @@ class ImuPrior : public MotionPrior {
   const ImuBias& bias() const { return state_.bias; }
 
  private:
-  using Mat15 = Eigen::Matrix<double, 15, 15>;
-  /// Of the IMU's origin. Errors: [rotation; position; velocity; gyro bias; accel bias], rotation and position as right
-  /// perturbations of T_odom_imu, velocity in odom.
+  static constexpr int kStates = 18;
+  using Vec18 = Eigen::Matrix<double, kStates, 1>;
+  using Mat18 = Eigen::Matrix<double, kStates, kStates>;
+  /// Of the IMU's origin. Errors: [rotation; position; velocity; gyro bias; accel bias; gravity], rotation and position as
+  /// right perturbations of T_odom_imu, velocity and gravity in odom. The gravity's length is known.
   struct State {
     SE3 T_odom_imu;
     Vec3 v_odom = Vec3::Zero();
     ImuBias bias;
-    Mat15 P = Mat15::Identity();
+    Vec3 gravity_odom = Vec3::Zero();
+    Mat18 P = Mat18::Identity();
+    /// All but the pose, which the registrations give.
+    void add_to_rest(const Vec18& change);
   };
+  static Mat18 transition(const ImuPreintegration& motion, const Mat3& R_before, const Mat3& R_after);
+  static Mat18 motion_noise(const ImuPreintegration& motion, const Mat3& R_before, const ImuCalibration& imu);
   /// From `begin`, the stamp of the state. Appends the motion to `path` if given. Nothing if samples are missing.
   std::optional<State> predict(Time begin, Time end, MotionPath* path) const;
   void restart(const OdometryFix& fix, double dt_s);

@@ -1,8 +1,13 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <numbers>
+
 #include "slam/inertial/fix_history.h"
+#include "slam/inertial/imu_prior.h"
 #include "slam/inertial/pose_covariance.h"
 #include "slam/inertial/prior_trust.h"
+#include "slam/inertial/rest_alignment.h"
 
 namespace vsslam {
 namespace {
@@ -50,6 +55,32 @@ TEST(FixHistory, DoesNotRingWithTheUndistortion) {
     if (k > 40) worst_late_m = std::max(worst_late_m, std::abs(error_m));
   }
   EXPECT_LT(worst_late_m, 1e-5);
+}
+
+// At rest a level bias of the accelerometer looks like a tilt. A turn tells them apart: the bias turns with the robot, up
+// does not. The poses are right in an odom that is as tilted as the first guess.
+TEST(ImuPrior, ATurnTellsABiasFromATilt) {
+  RigCalibration calibration;
+  const Vec3 bias_mps2(0.04, -0.03, 0), up(0, 0, calibration.imu.gravity_mps2);
+  const auto yaw_rad = [](double t) { return 0.5 * std::numbers::pi * std::clamp((t - 1) / 2, 0.0, 1.0); };
+  const auto sample = [&](int64_t t) {
+    const double rate_radps = t >= 1000 && t < 3000 ? 0.25 * std::numbers::pi : 0;
+    return ImuSample{ms(t), {0, 0, rate_radps}, up + bias_mps2, std::nullopt};
+  };
+  std::deque<ImuSample> first;
+  for (int64_t t = 0; t <= 100; t += 10) first.push_back(sample(t));
+  const RestAlignment rest = align_at_rest(first, calibration.imu, {});
+  ImuPrior prior({}, calibration);
+  const SE3 T_odom_start(rest.q_odom_base, Vec3::Zero());
+  ASSERT_GT(T_odom_start.angle(), 0.004);
+  prior.start({T_odom_start, rest.gyro_bias_radps, rest.gyro_bias_sigma_radps, true, rest.accel_bias_mps2});
+  for (int64_t t = 0; t <= 6000; t += 10) {
+    prior.add(sample(t));
+    if (t % 100 != 0) continue;
+    const SE3 T_odom_base = T_odom_start * SE3::from_rpy({0, 0, yaw_rad(1e-3 * static_cast<double>(t))}, Vec3::Zero());
+    prior.correct({.stamp = ms(t), .T_odom_base = T_odom_base});
+  }
+  EXPECT_LT((prior.bias().accel_mps2 - bias_mps2).norm(), 0.15 * bias_mps2.norm());
 }
 
 TEST(PriorTrust, RefusesWhatIsFarOffAndTakesItBackWhenItIsRight) {
