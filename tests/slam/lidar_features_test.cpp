@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
 #include <set>
 
 #include "slam/lidar/features.h"
@@ -188,16 +190,57 @@ TEST(SurfaceFeatures, LieOnTheSurfacesOfAScanWithoutRings) {
   EXPECT_GT(along, 50u);
 }
 
-TEST(Thinning, KeepsOnePerVoxelAndDirection) {
+TEST(Thinning, KeepsOnePerCellAndDirection) {
   std::vector<Feature> features;
   for (int i = 0; i < 100; ++i)
-    features.push_back({{0.05f + 0.001f * static_cast<float>(i), 0.05f, 0.05f},
+    features.push_back({{5, 0.01f + 0.001f * static_cast<float>(i), 0.05f},
                         {i % 2 ? 1.0f : 0.0f, i % 2 ? 0.0f : 1.0f, 0.0f},
                         0});
   const auto kept = thin_features(features, 0.2);
   ASSERT_EQ(kept.size(), 2u);
   EXPECT_EQ(kept[0].point_lidar, features[0].point_lidar);
   EXPECT_EQ(kept[1].point_lidar, features[1].point_lidar);
+}
+
+// At all ranges and in all directions: neighbours on a sphere are about as far apart as asked for.
+TEST(Thinning, LeavesAboutOnePointForEachSquareOfAVoxel) {
+  constexpr double kVoxel_m = 0.2, kPi = std::numbers::pi;
+  for (const double range_m : {1.2, 3.0, 10.0}) {
+    std::vector<Feature> features;
+    const double step_rad = 0.1 * kVoxel_m / range_m;
+    for (double z = -1 + step_rad; z < 1; z += step_rad)
+      for (double a = 0; a < 2 * kPi; a += 5 * step_rad) {
+        const double level = std::sqrt(1 - z * z);
+        const Vec3 p = range_m * Vec3(level * std::cos(a), level * std::sin(a), z);
+        features.push_back({p.cast<float>(), {0, 0, 1}, 0});
+      }
+    const double squares = 4 * kPi * range_m * range_m / (kVoxel_m * kVoxel_m);
+    const double kept = static_cast<double>(thin_features(features, kVoxel_m).size());
+    EXPECT_GT(kept, 0.6 * squares) << range_m;
+    EXPECT_LT(kept, 1.7 * squares) << range_m;
+  }
+}
+
+// Cubes would keep as many of the points that noise puts beyond their border as of those before it.
+TEST(Thinning, DoesNotShiftANoisyWall) {
+  constexpr double kNoise_m = 0.03;
+  uint64_t state = 1;
+  const auto uniform = [&] {
+    state = state * 6364136223846793005ull + 1442695040888963407ull;
+    return static_cast<double>(state >> 11) / 9007199254740992.0;
+  };
+  for (const double wall_m : {2.0, 2.02, 2.05, 2.08}) {
+    std::vector<Feature> features;
+    for (int i = 0; i < 20000; ++i) {
+      const Vec3 on_wall(6 * uniform() - 3, wall_m, uniform() - 0.5);
+      const double noise = kNoise_m * (uniform() + uniform() + uniform() - 1.5) * 2;
+      features.push_back({(on_wall * (1 + noise / on_wall.norm())).cast<float>(), {1, 0, 0}, 0});
+    }
+    const auto kept = thin_features(features, 0.1);
+    double mean_m = 0;
+    for (const Feature& f : kept) mean_m += f.point_lidar.y() / static_cast<double>(kept.size());
+    EXPECT_NEAR(mean_m, wall_m, 4 * kNoise_m / std::sqrt(static_cast<double>(kept.size()))) << wall_m;
+  }
 }
 
 TEST(Thinning, WhileSelectingGivesTheSame) {
