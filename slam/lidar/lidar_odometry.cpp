@@ -61,9 +61,9 @@ Registration LidarOdometry::align(const std::vector<Feature>& thin_features, con
   constexpr double kMemory = 0.9;
   constexpr int kLongestPause = 32;
   const auto from = [&](const SE3& start, const PosePrior& around) {
-    return register_scan(thin_features, around, start, map_, range_sigma_m(), config_.registration,
-                         config_.degeneracy);
+    return register_scan(thin_features, around, start, map_, noise(), config_.registration, config_.degeneracy);
   };
+  ++scans_since_key_;
   Registration best = from(prior.T_odom_lidar, prior);
   const double range_m = median_range_m(thin_features);
   const bool lost = looks_lost(best);
@@ -94,6 +94,11 @@ bool LidarOdometry::wants_key(const SE3& T_odom_base) const {
 
 void LidarOdometry::insert_key(const std::vector<Feature>& features, const SE3& T_odom_base,
                                const SE3& T_base_lidar) {
+  // No prior remembers longer than some seconds what a plane told.
+  constexpr double kMemory = 0.8, kMostScans = 30;
+  if (keys_made_ > 0)
+    scans_per_key_ = kMemory * scans_per_key_ + (1 - kMemory) * std::min<double>(kMostScans, scans_since_key_);
+  scans_since_key_ = 0;
   T_odom_lastkey_ = T_odom_base;
   const SE3 T_odom_lidar = T_odom_base * T_base_lidar;
   const Eigen::Matrix3f R = T_odom_lidar.matrix3().cast<float>();

@@ -60,6 +60,7 @@ class LidarOdometry {
 
  private:
   static constexpr size_t kScansHeard = 10;
+  ScanNoise noise() const { return {range_sigma_m(), scans_per_key_}; }
 
   LidarOdometryConfig config_;
   PlaneMap map_;
@@ -70,6 +71,8 @@ class LidarOdometry {
   int search_pause_ = 0, search_waits_ = 0;  // scans: after a search that found nothing the next waits twice as long
   std::optional<SE3> T_odom_lastkey_;
   uint32_t keys_made_ = 0;
+  int scans_since_key_ = 0;
+  double scans_per_key_ = 1;  // lately
 };
 
 }  // namespace vsslam

@@ -16,6 +16,7 @@ void RegistrationConfig::fields(Fields& f) {
   f.automatic("final_distance_m", final_distance_m, positive());
   f.automatic("robust_scale_m", robust_scale_m, positive());
   f("prior_sigmas", prior_sigmas, positive());
+  f("beam_sigma_rad", beam_sigma_rad, non_negative());
   f("converged_rotation_deg", converged_rotation_deg, positive());
   f("converged_translation_m", converged_translation_m, positive());
 }
@@ -60,26 +61,44 @@ struct Linearised {
   Vec6 b = Vec6::Zero();
 };
 
-// r_i = n . (T Exp(x) p) - d, dr/dx = [p x (R^T n); R^T n] (sensor-centred right perturbation). The n points of a plane
-// share its error: their mean has the variance (noise^2 + n plane^2) / n, so each weighs 1 / (noise^2 + n plane^2).
+// The n points of a plane share its error, as do the k scans that meet it: the mean of all has the variance
+// (noise^2 + n k plane^2) / (n k), so each weighs 1 / (noise^2 + n k plane^2).
 class Weights {
  public:
-  Weights(const std::vector<Match>& matches, const PlaneMap& map, double range_sigma_m, double robust_scale_m)
+  Weights(const std::vector<Match>& matches, const PlaneMap& map, const SE3& T_odom_lidar, const ScanNoise& noise,
+          const RegistrationConfig& config)
       : counts_(points_per_plane(matches, map)),
-        noise_m2_(range_sigma_m * range_sigma_m),
-        inverse_scale_m2_(1 / (robust_scale_m * robust_scale_m)) {}
+        position_odom_(T_odom_lidar.translation.cast<float>()),
+        noise_m2_(noise.range_sigma_m * noise.range_sigma_m),
+        scans_(noise.scans_sharing_planes),
+        beam_variance_(config.beam_sigma_rad * config.beam_sigma_rad) {
+    const double scale_m = config.robust_scale_m.value_or(kRobustSigmas * noise.range_sigma_m);
+    inverse_scale_m2_ = 1 / (scale_m * scale_m);
+  }
 
   double of(const Match& m) const {
-    const double shared_m2 = static_cast<double>(m.plane->variance_m2(m.point_odom));
-    return robust(m) / (noise_m2_ + counts_[static_cast<size_t>(m.plane->number)] * shared_m2);
+    const double sharing = scans_ * counts_[static_cast<size_t>(m.plane->number)];
+    const double shared_m2 = static_cast<double>(m.plane->variance_m2(m.point_odom)) + beam_m2(m);
+    return robust(m) / (noise_m2_ + sharing * shared_m2);
   }
   double robust(const Match& m) const { return 1 / (1 + m.residual_m * m.residual_m * inverse_scale_m2_); }
 
  private:
+  static constexpr double kRobustSigmas = 4.3;
+
+  // Across the beam, of which a plane feels r sin(incidence).
+  double beam_m2(const Match& m) const {
+    const Eigen::Vector3f ray_odom = m.point_odom - position_odom_;
+    const float across = m.plane->normal_odom.dot(ray_odom);
+    return beam_variance_ * static_cast<double>(ray_odom.squaredNorm() - across * across);
+  }
+
   std::vector<int> counts_;
-  double noise_m2_, inverse_scale_m2_;
+  Eigen::Vector3f position_odom_;
+  double noise_m2_, scans_, beam_variance_, inverse_scale_m2_;
 };
 
+// r_i = n . (T Exp(x) p) - d, dr/dx = [p x (R^T n); R^T n] (sensor-centred right perturbation).
 Linearised linearise(const std::vector<Match>& matches, const SE3& T_odom_lidar, const Weights& weights) {
   Linearised sums;
   const Mat3 R_lidar_odom = T_odom_lidar.matrix3().transpose();
@@ -166,10 +185,9 @@ double fitting(const std::vector<Match>& matches, const Weights& weights) {
 }  // namespace
 
 Registration register_scan(const std::vector<Feature>& features, const PosePrior& prior, const SE3& start,
-                           const PlaneMap& map, double range_sigma_m, const RegistrationConfig& config,
+                           const PlaneMap& map, const ScanNoise& noise, const RegistrationConfig& config,
                            const DegeneracyConfig& degeneracy) {
-  const double final_m = config.final_distance_m.value_or(std::max(0.1, 5 * range_sigma_m));
-  const double robust_scale_m = config.robust_scale_m.value_or(4.3 * range_sigma_m);
+  const double final_m = config.final_distance_m.value_or(std::max(0.1, 5 * noise.range_sigma_m));
   const double converged_rotation_rad = config.converged_rotation_deg * std::numbers::pi / 180.0;
   const bool weighed = config.weighting == RegistrationConfig::Weighting::covariance;
   const Mat6 prior_information = prior.covariance.ldlt().solve(Mat6::Identity());
@@ -187,10 +205,10 @@ Registration register_scan(const std::vector<Feature>& features, const PosePrior
       result.T_odom_lidar = prior.T_odom_lidar;
       return result;
     }
-    const Weights weights(matches, map, range_sigma_m, robust_scale_m);
+    const Weights weights(matches, map, result.T_odom_lidar, noise, config);
     const Linearised sums = linearise(matches, result.T_odom_lidar, weights);
-    const Linearised noise = feigned(matches, result.T_odom_lidar, weights);
-    const Mat6 H_part = true_part({sums.H, noise.H}), A_part = undrawn_part({sums.A, noise.A});
+    const Linearised feint = feigned(matches, result.T_odom_lidar, weights);
+    const Mat6 H_part = true_part({sums.H, feint.H}), A_part = undrawn_part({sums.A, feint.A});
     result.information = analyse_information(H_part * sums.H * H_part);
     result.degeneracy = detect_degeneracy(result.information.H, result.correspondences, degeneracy);
     result.scan_information = A_part * sums.A * A_part;

@@ -28,6 +28,9 @@ struct RegistrationConfig {
   /// A prior farther than so many sigma from where the scan fits is believed ever less (Cauchy): far more than one that
   /// is merely worse than it claims, which is left to PriorTrust.
   double prior_sigmas = 20;
+  /// Where in its beam an echo comes from is not known: evenly within the 3 mrad of a VLP-16's sheet. The slanted surfaces
+  /// that are seen far away look shifted by as much, all their points alike.
+  double beam_sigma_rad = 0.00087;
   double converged_rotation_deg = 0.005;
   double converged_translation_m = 1e-4;
   void fields(Fields& f);
@@ -37,6 +40,14 @@ struct RegistrationConfig {
 struct PosePrior {
   SE3 T_odom_lidar;
   Mat6 covariance = Mat6::Identity();  ///< of a right perturbation [rotation; translation]
+};
+
+/// How scan and map err.
+struct ScanNoise {
+  double range_sigma_m = 0.01;  ///< each point by itself
+  /// Scans in a row that meet the same planes, and so the same errors of theirs: together they know no more of the pose
+  /// than the planes do.
+  double scans_sharing_planes = 1;
 };
 
 struct Registration {
@@ -54,9 +65,9 @@ struct Registration {
 };
 
 /// Minimises sum w_i (n_i . (T p_i) - d_i)^2 + xi' P^-1 xi over T = T_odom_lidar, xi = Log(T_prior^-1 T), starting from
-/// `start`. The w_i are those of points with the noise `range_sigma_m` on planes that err as a whole.
+/// `start`. The w_i are those of noisy points on planes that err as a whole.
 Registration register_scan(const std::vector<Feature>& features, const PosePrior& prior, const SE3& start,
-                           const PlaneMap& map, double range_sigma_m, const RegistrationConfig& config,
+                           const PlaneMap& map, const ScanNoise& noise, const RegistrationConfig& config,
                            const DegeneracyConfig& degeneracy);
 
 }  // namespace vsslam
