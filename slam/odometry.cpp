@@ -12,6 +12,7 @@
 #include "slam/inertial/pose_covariance.h"
 #include "slam/inertial/prior_trust.h"
 #include "slam/inertial/rest_alignment.h"
+#include "slam/lidar/ring_bands.h"
 #include "slam/lidar/surface_features.h"
 #include "slam/lidar/undistort.h"
 #include "slam/map/map_cloud.h"
@@ -57,6 +58,7 @@ struct Odometry::Impl {
   PriorTrust trust;
   ImuUnits imu_units;
   LidarOdometry lidar;
+  RingBands ring_bands;
   ImuTrack imu_before_start;
   std::optional<StampedPose> last_odom_base;  // of the last scan
   std::optional<LidarScan> first_scan;        // until it is known how the robot moved then
@@ -83,6 +85,7 @@ struct Odometry::Impl {
   MotionPath believed_path(Time begin, Time end) const;
   Prediction predict(const LidarScan& scan, const MotionPath& path, const Mat6& covariance) const;
   Prediction predict(const LidarScan& scan);
+  std::optional<LidarScan> with_rings(const LidarScan& scan);
   ScanView view(const LidarScan& scan, const MotionPath& motion);
   Registration align(const ScanView& view, const Prediction& prediction);
   void try_last_velocity(const LidarScan& scan, Prediction& prediction, ScanView& view, Registration& registration);
@@ -182,6 +185,20 @@ Odometry::Impl::Prediction Odometry::Impl::predict(const LidarScan& scan) {
   const Mat6 covariance =
       trust.believed() ? Mat6(trust.inflation() * prior->covariance(scan.stamp)) : coasting.covariance(scan.stamp);
   return predict(scan, believed_path(last_odom_base->stamp, scan.end), covariance);
+}
+
+// A scan whose rings say nothing, with those that its elevations give; or none, if they do not gather. Nothing if there is
+// nothing to repair.
+std::optional<LidarScan> Odometry::Impl::with_rings(const LidarScan& scan) {
+  if (!scan.rings_known || rings_tell(scan.points)) return std::nullopt;
+  LidarScan repaired = scan;
+  repaired.rings_known = ring_bands.fill(repaired.points);
+  if (health.scans_ringless++ == 0)
+    health.repairs.push_back(
+        repaired.rings_known
+            ? fmt::format("lidar: all points are of one ring: {} rings derived from their elevations", ring_bands.rings())
+            : std::string("lidar: all points are of one ring, and their elevations do not gather: surfaces from neighbours"));
+  return repaired;
 }
 
 ScanView Odometry::Impl::view(const LidarScan& scan, const MotionPath& motion) {
@@ -364,13 +381,15 @@ void Odometry::add(const CameraFrame& image) {
   impl_->prior->add(image);
 }
 OdometryScan Odometry::add(const LidarScan& scan) {
-  return impl_->add(scan);
+  const std::optional<LidarScan> repaired = impl_->with_rings(scan);
+  return impl_->add(repaired ? *repaired : scan);
 }
 
 OdometryHealth Odometry::health() const {
   OdometryHealth health = impl_->health;
   health.range_sigma_m = impl_->lidar.range_sigma_m();
-  health.repairs = impl_->imu_units.repairs_said();
+  const std::vector<std::string>& of_units = impl_->imu_units.repairs_said();
+  health.repairs.insert(health.repairs.end(), of_units.begin(), of_units.end());
   return health;
 }
 

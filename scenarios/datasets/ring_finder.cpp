@@ -7,22 +7,11 @@
 #include <numbers>
 
 #include "sensors/laser_table.h"
+#include "slam/lidar/ring_bands.h"
 
 namespace vsslam {
 
 namespace {
-
-double elevation_rad(const LidarPoint& p) {
-  return std::atan2(static_cast<double>(p.z), std::hypot(static_cast<double>(p.x), static_cast<double>(p.y)));
-}
-
-size_t nearest(const std::vector<double>& ascending, double value) {
-  const auto after = std::lower_bound(ascending.begin(), ascending.end(), value);
-  const auto index = static_cast<size_t>(after - ascending.begin());
-  if (index == ascending.size()) return index - 1;
-  if (index > 0 && value - ascending[index - 1] <= ascending[index] - value) return index - 1;
-  return index;
-}
 
 std::vector<double> elevations_of(LidarModel model) {
   std::vector<double> elevations;
@@ -37,32 +26,6 @@ bool fits(const std::vector<double>& table, const std::vector<double>& seen) {
   const auto on = std::count_if(seen.begin(), seen.end(),
                                 [&](double e) { return std::abs(table[nearest(table, e)] - e) < kOff; });
   return on >= 0.9 * static_cast<double>(seen.size());
-}
-
-// Elevations that gather in narrow bands with wide gaps between them: the bands' means. Empty: they do not.
-std::vector<double> gathered(std::vector<double> seen) {
-  constexpr size_t kMost = 128, kEach = 10;
-  constexpr double kClean = 3;
-  std::sort(seen.begin(), seen.end());
-  std::vector<double> gaps;
-  for (size_t i = 1; i < seen.size(); ++i) gaps.push_back(seen[i] - seen[i - 1]);
-  std::sort(gaps.begin(), gaps.end(), std::greater<>());
-  size_t between = 0;  // gaps that are none within a band
-  double most = kClean;
-  for (size_t k = 1; k < std::min(kMost, gaps.size()) && (k + 1) * kEach <= seen.size(); ++k)
-    if (const double ratio = gaps[k - 1] / std::max(gaps[k], 1e-6); ratio > most) most = ratio, between = k;
-  if (between == 0) return {};
-  std::vector<double> means;
-  size_t begin = 0;
-  for (size_t i = 1; i <= seen.size(); ++i) {
-    if (i < seen.size() && seen[i] - seen[i - 1] < gaps[between - 1]) continue;
-    if (seen[i - 1] - seen[begin] > gaps[between - 1] / 2) return {};
-    double sum = 0;
-    for (size_t k = begin; k < i; ++k) sum += seen[k];
-    means.push_back(sum / static_cast<double>(i - begin));
-    begin = i;
-  }
-  return means;
 }
 
 bool is_ring(double ring, int most_rings) {

@@ -59,6 +59,7 @@ bool LidarOdometry::looks_lost(const Registration& registration) const {
 
 Registration LidarOdometry::align(const std::vector<Feature>& thin_features, const PosePrior& prior) {
   constexpr double kMemory = 0.9;
+  constexpr double kFewer = 0.1;  // of the features, that are not where they were lately: reason to look at once
   constexpr int kLongestPause = 32;
   const auto from = [&](const SE3& start, const PosePrior& around) {
     return register_scan(thin_features, around, start, map_, noise(), config_.registration, config_.degeneracy);
@@ -68,7 +69,9 @@ Registration LidarOdometry::align(const std::vector<Feature>& thin_features, con
   const double range_m = median_range_m(thin_features);
   const bool lost = looks_lost(best);
   const bool enough = thin_features.size() >= static_cast<size_t>(config_.registration.min_correspondences);
-  if (enough && (lost || needs_search(prior, range_m, config_.search)) && --search_waits_ < 0) {
+  const bool fewer = best.cost > usual_cost_ + kFewer;
+  const bool could_miss = lost || needs_search(prior, range_m, config_.search);
+  if (enough && could_miss && (--search_waits_ < 0 || fewer)) {
     const PosePrior around = lost ? astray(prior) : prior;
     const double standing_cost = best.cost;
     for (const SE3& start : likely_poses(thin_features, around, range_m, map_, range_sigma_m(), config_.search)) {
@@ -80,8 +83,11 @@ Registration LidarOdometry::align(const std::vector<Feature>& thin_features, con
     search_pause_ = best.cost < standing_cost ? 0 : std::clamp(2 * search_pause_, 1, kLongestPause);
     search_waits_ = search_pause_;
   }
-  if (!best.used_prior_only)
-    usual_misfit_ = usual_misfit_ == 1 ? best.misfit : kMemory * usual_misfit_ + (1 - kMemory) * best.misfit;
+  if (!best.used_prior_only) {
+    const bool first = usual_misfit_ == 1;
+    usual_misfit_ = first ? best.misfit : kMemory * usual_misfit_ + (1 - kMemory) * best.misfit;
+    usual_cost_ = first ? best.cost : kMemory * usual_cost_ + (1 - kMemory) * best.cost;
+  }
   return best;
 }
 

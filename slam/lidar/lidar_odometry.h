@@ -67,7 +67,7 @@ class LidarOdometry {
   std::deque<std::vector<MapPoint>> keys_odom_;  // in the map
   double range_sigma_m_;
   std::vector<double> heard_m_;  // noise of the first scans
-  double usual_misfit_ = 1;      // of the scans so far, a running mean; 1: none yet
+  double usual_misfit_ = 1, usual_cost_ = 1;  // of the scans so far, running means; 1: none yet
   int search_pause_ = 0, search_waits_ = 0;  // scans: after a search that found nothing the next waits twice as long
   std::optional<SE3> T_odom_lastkey_;
   uint32_t keys_made_ = 0;

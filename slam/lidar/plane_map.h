@@ -19,8 +19,10 @@
 namespace vsslam {
 
 struct PlaneMapConfig {
-  double cell_m = 1.6;  ///< edge of the coarsest cubes
-  int levels = 4;       ///< each level halves the edge
+  /// Edge of the coarsest cubes: three lines of a VLP-16, 2 degrees apart, on a wall 100 m away, with room to spare for
+  /// scanners of fewer lasers.
+  double cell_m = 12.8;
+  int levels = 7;       ///< each level halves the edge
   int min_points = 10;  ///< of a plane
   int min_lines = 3;    ///< a ring that runs over a corner makes a plane that is not there; three do not
   /// RMS distance of the points from their plane. Automatic: 2.15 times the noise of ranges, which leaves room for

@@ -18,6 +18,7 @@ void PoseSearchConfig::fields(Fields& f) {
 namespace {
 
 constexpr double kSigmas = 3;
+constexpr size_t kHeard = 1000;  // poses: so many of the best by a quarter of the judges hold the best by all
 
 double position_sigma_m(const PosePrior& prior) {
   return std::sqrt(prior.covariance.bottomRightCorner<3, 3>().diagonal().maxCoeff());
@@ -62,7 +63,8 @@ bool needs_search(const PosePrior& prior, double range_m, const PoseSearchConfig
 
 std::vector<SE3> likely_poses(const std::vector<Feature>& features, const PosePrior& prior, double range_m,
                               const PlaneMap& map, double range_sigma_m, const PoseSearchConfig& config) {
-  const std::vector<Feature> judges = every_nth(features, config.features);
+  // A quarter of the judges chooses whom all of them look at.
+  const std::vector<Feature> judges = every_nth(features, config.features), few = every_nth(judges, config.features / 4);
   const double step_m = config.reach_m, step_rad = config.reach_m / range_m;
   const double scale_m = std::max(4.3 * range_sigma_m, 0.5 * step_m);
   const auto steps_of = [](double sigma, double most, double step) {
@@ -76,22 +78,25 @@ std::vector<SE3> likely_poses(const std::vector<Feature>& features, const PosePr
   const auto pose = [&](const Candidate& c) {
     return prior.T_odom_lidar * SE3::from_rpy({0, 0, c.yaw_rad}, {c.x_m, c.y_m, 0});
   };
-  const auto judged = [&](Candidate c) {
-    c.fit = fit(judges, pose(c), map, scale_m);
-    return c;
-  };
-  const Candidate standing = judged({});
+  const auto judge = [&](Candidate& c, const std::vector<Feature>& by) { c.fit = fit(by, pose(c), map, scale_m); };
+  const auto better = [](const Candidate& a, const Candidate& b) { return a.fit > b.fit; };
   std::vector<Candidate> candidates;
   for (int yaw = -turns; yaw <= turns; ++yaw)
     for (int a = -along; a <= along; ++a)
       for (int b = -aside; b <= aside; ++b) {
         const Eigen::Vector2d place_m =
             ellipse.eigenvectors() * Eigen::Vector2d(b * step_m, a * step_m);
-        const Candidate c = judged({0, place_m.x(), place_m.y(), yaw * step_rad});
-        if (c.fit > standing.fit + 0.5 * config.clearly_better) candidates.push_back(c);
+        Candidate c{0, place_m.x(), place_m.y(), yaw * step_rad};
+        judge(c, few);
+        candidates.push_back(c);
       }
-  std::stable_sort(candidates.begin(), candidates.end(),
-                   [](const Candidate& a, const Candidate& b) { return a.fit > b.fit; });
+  std::stable_sort(candidates.begin(), candidates.end(), better);
+  candidates.resize(std::min(candidates.size(), kHeard));
+  Candidate standing;
+  judge(standing, judges);
+  for (Candidate& c : candidates) judge(c, judges);
+  std::erase_if(candidates, [&](const Candidate& c) { return c.fit <= standing.fit + 0.5 * config.clearly_better; });
+  std::stable_sort(candidates.begin(), candidates.end(), better);
   std::vector<Candidate> chosen;
   for (const Candidate& c : candidates) {
     if (chosen.size() == static_cast<size_t>(config.finalists)) break;
