@@ -89,8 +89,7 @@ struct Odometry::Impl {
   ScanView view(const LidarScan& scan, const MotionPath& motion);
   Registration align(const ScanView& view, const Prediction& prediction);
   void try_last_velocity(const LidarScan& scan, Prediction& prediction, ScanView& view, Registration& registration);
-  void settle_motion(const LidarScan& scan, bool astray, const Prediction& prediction, ScanView& view,
-                     Registration& registration);
+  void settle_motion(const LidarScan& scan, const Prediction& prediction, ScanView& view, Registration& registration);
   void judge_prior(const LidarScan& scan, const SE3& T_odom_base, const Mat6& known,
                    const Registration& registration);
   void restart_prior(Time stamp);
@@ -113,9 +112,8 @@ OdometryScan Odometry::Impl::add(const LidarScan& scan) {
   Registration registration = align(seen, prediction);
   // ... and again if the prior leads nowhere: by the last velocity; or if the robot moved otherwise than thought, which
   // the points were undistorted by
-  const bool astray = lidar.looks_lost(registration);
   try_last_velocity(scan, prediction, seen, registration);
-  settle_motion(scan, astray, prediction, seen, registration);
+  settle_motion(scan, prediction, seen, registration);
   const SE3 T_odom_base = registration.T_odom_lidar * rig.lidar.T_base_lidar.inverse();
   const Mat6 covariance = moved_covariance(registration.covariance, rig.lidar.T_base_lidar.inverse());
   // 5 what the LiDAR has seen tells what the prior is worth, and corrects its biases and velocity
@@ -256,14 +254,13 @@ void Odometry::Impl::try_last_velocity(const LidarScan& scan, Prediction& predic
 // same tells more of the motion than the prior knew. By what the prior missed since the last scan, at a steady rate, it
 // misses during this one. Repeated until the two agree. The first scan of all, taken when nothing was known of the
 // motion, is set right together with the second. (As in MOLA, which estimates the twist with the pose.)
-void Odometry::Impl::settle_motion(const LidarScan& scan, bool astray, const Prediction& prediction, ScanView& seen,
+void Odometry::Impl::settle_motion(const LidarScan& scan, const Prediction& prediction, ScanView& seen,
                                    Registration& registration) {
   constexpr double kBent_m = 0.05, kBent_rad = 0.01;  // over a scan: what features and gates bear without notice
   constexpr int kRounds = 4;
   const std::optional<LidarScan> first = std::exchange(first_scan, std::nullopt);
   if (!last_odom_base && rolls(scan)) first_scan = scan;
-  constexpr int64_t kStart = 3;  // scans until the velocity is known well enough to undistort by
-  if (!last_odom_base || !rolls(scan) || (health.scans > kStart && !astray)) return;
+  if (!last_odom_base || !rolls(scan)) return;
   const SE3 T_lidar_base = rig.lidar.T_base_lidar.inverse();
   const double dt_s = seconds_between(last_odom_base->stamp, scan.stamp);
   Vec6 corrected = Vec6::Zero();  // twist beside the prior's
