@@ -34,6 +34,7 @@ const std::vector<std::string>& metric_names() {
                                                  "rpe_10m_deg",
                                                  "end_error_m",
                                                  "odometry_ate_rmse_m",
+                                                 "odometry_nees",
                                                  "vio_ate_rmse_m",
                                                  "map_error_mean_m",
                                                  "descriptors.count",

@@ -29,6 +29,7 @@ Json all_figures(const Metrics& m) {
           {"rpe_10m_deg", number(m.rpe_10m_deg)},
           {"end_error_m", number(m.end_error_m)},
           {"odometry_ate_rmse_m", number(m.odometry_ate_rmse_m)},
+          {"odometry_nees", number(m.odometry_nees)},
           {"vio_ate_rmse_m", number(m.vio_ate_rmse_m)},
           {"map_error_mean_m", number(m.map_error_mean_m)},
           {"coverage", number(m.coverage)},
@@ -66,7 +67,7 @@ Json to_json(const Metrics& m) {
   erase(json["loops"], {"revisits", "recall", "aliases"});
   if (m.truth == Truth::trajectory) return json;
   erase(json, {"path_length_m", "ate_rmse_m", "ate_max_m", "rpe_10m_percent", "rpe_10m_deg", "end_error_m",
-               "odometry_ate_rmse_m", "vio_ate_rmse_m", "coverage"});
+               "odometry_ate_rmse_m", "odometry_nees", "vio_ate_rmse_m", "coverage"});
   erase(json["loops"], {"true", "false", "precision"});
   return json;
 }

@@ -25,6 +25,7 @@ struct Metrics {
   double duration_s = 0, path_length_m = 0;
   int64_t scans = 0, images = 0;
   std::optional<double> ate_rmse_m, ate_max_m, rpe_10m_percent, rpe_10m_deg, end_error_m;
+  std::optional<double> odometry_nees;  ///< of the edges from key scan to key scan: 1 if they err as they claim
   std::optional<double> odometry_ate_rmse_m, vio_ate_rmse_m, map_error_mean_m;
   std::optional<double> coverage;  ///< share of the scans that have truth
   struct Descriptors {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "core/files.h"
@@ -15,6 +16,8 @@ namespace vsslam {
 namespace fs = std::filesystem;
 
 namespace {
+
+constexpr Duration kSameStamp{1'000'000};  // a robot at 1 m/s moves 1 mm, less than an edge is known to
 
 Metrics::Descriptors score_descriptors(const Mapping& mapping) {
   const DatabaseSize size = mapping.loop_closer().database_size(mapping.key_scans());
@@ -44,6 +47,26 @@ Metrics::Loops score_loops(const RunRecord& record) {
           .precision = score.precision()};
 }
 
+// Mean over the edges from key scan to key scan of e' Omega e / 6 (normalised estimation error squared, Bar-Shalom et al.
+// 2001, section 5.4).
+std::optional<double> odometry_nees(const Mapping& mapping, std::span<const StampedPose> truth) {
+  std::vector<StampedPose> keys;
+  for (const KeyScan& key : mapping.key_scans()) keys.push_back({key.stamp, key.T_odom_base});
+  std::map<int, SE3> true_pose;
+  for (const StampPair& pair : associate(keys, truth, kSameStamp))
+    true_pose[static_cast<int>(pair.estimate)] = truth[pair.truth].pose;
+  double sum = 0, edges = 0;
+  for (const PoseEdge& edge : mapping.pose_graph().edges()) {
+    const auto from = true_pose.find(edge.from), to = true_pose.find(edge.to);
+    if (edge.is_loop || from == true_pose.end() || to == true_pose.end()) continue;
+    const Vec6 error = edge_error(edge.T_from_to, from->second, to->second);
+    sum += error.dot(edge.information * error) / 6;
+    ++edges;
+  }
+  if (edges == 0) return std::nullopt;
+  return sum / edges;
+}
+
 void score_trajectories(const RunRecord& record, Metrics& m) {
   const std::span<const StampedPose> truth = record.truth_world_base;
   if (truth.empty()) return;
@@ -66,6 +89,7 @@ void score_trajectories(const RunRecord& record, Metrics& m) {
   m.rpe_10m_deg = estimate.rpe_10m_deg;
   m.end_error_m = estimate.end_error_m;
   m.odometry_ate_rmse_m = score(record.estimation.mapping().trajectory_odom_base(), truth).ate_rmse_m;
+  m.odometry_nees = odometry_nees(record.estimation.mapping(), truth);
   if (!record.estimation.vio_start_base().empty())
     m.vio_ate_rmse_m = score(record.estimation.vio_start_base(), truth).ate_rmse_m;
   const Cloud map = record.estimation.mapping().map_cloud(record.setup.map_voxel_m);

@@ -66,8 +66,7 @@ void Mapping::Impl::add_key(const OdometryScan& scan) {
   graph.add_node(key.id, key.T_map_base);
   if (!keys.empty()) {
     const SE3 T_last_key = keys.back().T_odom_base.inverse() * key.T_odom_base;
-    const Vec6 information = config.graph.odometry_variances().cwiseInverse();
-    graph.add_edge({keys.back().id, key.id, T_last_key, information.asDiagonal()});
+    graph.add_edge({keys.back().id, key.id, T_last_key, config.graph.odometry_information(scan.covariance_since_key)});
     key.way_m = keys.back().way_m + T_last_key.translation.norm();
   }
   keys.push_back(std::move(key));

@@ -22,6 +22,8 @@ struct OdometryScan {
   Time end;                            ///< of the scan
   std::optional<VisualReport> visual;  ///< of the prior `vio`
   bool is_key = false;
+  /// Of a key scan's pose in the frame of the last one's, right perturbation [rotation; translation].
+  Mat6 covariance_since_key = Mat6::Identity();
   SharedCloud features_lidar;    ///< planar points, thinned by `odometry.voxel_m`
   SharedCloud points_lidar;      ///< all undistorted points
   SharedCloud map_points_lidar;  ///< of these, one per half of `odometry.voxel_m`

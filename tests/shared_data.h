@@ -21,6 +21,15 @@ inline std::filesystem::path shared_case(const std::string& name) {
   return folder;
 }
 
+/// Raw packets of a real VLP-16 at rest in a room: of $VSSLAM_VLP16_PACKETS, or of data/. Empty: there are none.
+inline std::filesystem::path shared_packets() {
+  if (const char* asked = std::getenv("VSSLAM_VLP16_PACKETS")) return asked;
+  const std::filesystem::path file = shared_folder() / "data" / "vlp16_room_packets.bin";
+  const bool expected = std::filesystem::is_directory(file.parent_path());
+  EXPECT_EQ(std::filesystem::exists(file), expected) << file;
+  return expected ? file : std::filesystem::path();
+}
+
 }  // namespace vsslam
 
 /// For the head of a test.

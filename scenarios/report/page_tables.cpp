@@ -40,6 +40,7 @@ const std::vector<Group>& groups() {
         {"/rpe_10m_percent", "RPE over 10 m, translation", "%", 3, Better::low},
         {"/rpe_10m_deg", "RPE over 10 m, rotation", "°", 3, Better::low},
         {"/odometry_ate_rmse_m", "Odometry ATE RMSE", "m", 3, Better::low},
+        {"/odometry_nees", "Odometry NEES per dimension", "", 2},
         {"/vio_ate_rmse_m", "VIO ATE RMSE", "m", 3, Better::low},
         {"/map_error_mean_m", "Map to surface, mean", "m", 3, Better::low},
         {"/coverage", "Scans with truth", "", 3, Better::high}}},

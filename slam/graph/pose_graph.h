@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -13,14 +14,19 @@
 namespace vsslam {
 
 struct PoseGraphConfig {
-  double odometry_rotation_variance_rad2 = 1e-6;
-  double odometry_translation_variance_m2 = 1e-4;
+  /// Of odometry's edges. Automatic: the covariance that registration and prior leave (odometry.h).
+  std::optional<double> odometry_rotation_variance_rad2, odometry_translation_variance_m2;
+  /// Of the directions of a loop's edge that the planes of both places see.
+  double loop_rotation_variance_rad2 = 1e-6;
+  double loop_translation_variance_m2 = 1e-4;
   int max_iterations = 100;
   double cost_tolerance = 1e-8;  ///< stop when a step lowers the cost by less than this share of it
   void fields(Fields& f);
 
-  /// Of an odometry edge, tangent order [rotation; translation]: rad^2, m^2.
-  Vec6 odometry_variances() const;
+  /// Tangent order [rotation; translation]: rad^2, m^2.
+  Vec6 loop_variances() const;
+  /// Information of an odometry edge whose covariance is this, or what was set in its place.
+  Mat6 odometry_information(const Mat6& covariance) const;
 };
 
 /// Relative pose of two nodes. Information has the tangent order [rotation; translation].

@@ -54,9 +54,14 @@ void ImuUnits::watch_rates(double rate) {
   if (in_degrees_) return;
   too_fast_ = rate > kFastest_radps ? too_fast_ + 1 : 0;
   if (too_fast_ < kSpike) return;
-  in_degrees_ = rates_judged_ = newly_in_degrees_ = true;
+  take_as_degrees();
   repairs_said_.push_back(
       fmt::format("imu: the gyroscope gives {:.1f}, more than any measures in rad/s: taken as degrees/s", rate));
+}
+
+void ImuUnits::take_as_degrees() {
+  in_degrees_ = rates_judged_ = newly_in_degrees_ = true;
+  for (ImuSample& sample : recent_) sample.gyro_radps *= kDegree;
 }
 
 bool ImuUnits::newly_in_degrees() {
@@ -104,7 +109,7 @@ void ImuUnits::judge_rates() {
   rates_judged_ = true;
   const double alike = dot_ / std::sqrt(lidar2_ * gyro2_);  // cosine between the two
   if (alike > kAlike && std::abs(*scale * kDegree - 1) < kFifth) {
-    in_degrees_ = newly_in_degrees_ = true;
+    take_as_degrees();
     repairs_said_.push_back(fmt::format(
         "imu: the gyroscope turns {:.1f} times as fast as the LiDAR: given in degrees, taken as such", *scale));
   }

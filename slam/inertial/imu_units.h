@@ -26,6 +26,8 @@ class ImuUnits {
   /// Once, when it turned out that the rates are in degrees: from now on they are converted, and what was learnt from
   /// them is void.
   bool newly_in_degrees();
+  /// The samples before the one that told, in the units that they turned out to have.
+  const std::deque<ImuSample>& recent() const { return recent_; }
   bool repairs() const { return in_g_ || in_degrees_; }
   /// What was set right, one line each.
   const std::vector<std::string>& repairs_said() const { return repairs_said_; }
@@ -34,6 +36,7 @@ class ImuUnits {
   void weigh(const ImuSample& sample);
   void watch_rates(double rate);
   void judge_rates();
+  void take_as_degrees();
   std::optional<double> gyro_scale() const;  // over the LiDAR's; nothing before the robot has turned enough to tell
   std::optional<Vec3> turned(Time from, Time to) const;
 

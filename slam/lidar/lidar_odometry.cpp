@@ -1,5 +1,6 @@
 #include "slam/lidar/lidar_odometry.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 
 namespace vsslam {
@@ -89,6 +90,14 @@ Registration LidarOdometry::align(const std::vector<Feature>& thin_features, con
     usual_cost_ = first ? best.cost : kMemory * usual_cost_ + (1 - kMemory) * best.cost;
   }
   return best;
+}
+
+Mat6 LidarOdometry::step_covariance(const std::vector<Feature>& thin_features, const SE3& T_odom_lidar) const {
+  constexpr double kUnseen = 1;  // 1 m, 1 rad: what no surface sees
+  const double new_share = 1.0 / config_.local_map_keys;  // from key scan to key scan one in the map is another
+  const Mat6 information =
+      step_information(thin_features, T_odom_lidar, map_, range_sigma_m(), new_share, config_.registration);
+  return (information + kUnseen * Mat6::Identity()).ldlt().solve(Mat6::Identity());
 }
 
 bool LidarOdometry::wants_key(const SE3& T_odom_base) const {

@@ -49,6 +49,8 @@ class LidarOdometry {
   /// it too.
   Registration align(const std::vector<Feature>& thin_features, const PosePrior& prior);
   bool has_map() const { return map_.plane_count() > 0; }
+  /// Covariance of a registered scan beside another that met the same map.
+  Mat6 step_covariance(const std::vector<Feature>& thin_features, const SE3& T_odom_lidar) const;
   /// Whether a scan fits so much worse than scans did lately that it may be lost.
   bool looks_lost(const Registration& registration) const;
   /// Far enough from the last key scan, or the first.

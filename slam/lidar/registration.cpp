@@ -23,6 +23,10 @@ void RegistrationConfig::fields(Fields& f) {
 
 namespace {
 
+double final_distance_m(const RegistrationConfig& config, double range_sigma_m) {
+  return config.final_distance_m.value_or(std::max(0.1, 5 * range_sigma_m));
+}
+
 struct Match {
   const Feature* feature;
   const Plane* plane;
@@ -187,7 +191,7 @@ double fitting(const std::vector<Match>& matches, const Weights& weights) {
 Registration register_scan(const std::vector<Feature>& features, const PosePrior& prior, const SE3& start,
                            const PlaneMap& map, const ScanNoise& noise, const RegistrationConfig& config,
                            const DegeneracyConfig& degeneracy) {
-  const double final_m = config.final_distance_m.value_or(std::max(0.1, 5 * noise.range_sigma_m));
+  const double final_m = final_distance_m(config, noise.range_sigma_m);
   const double converged_rotation_rad = config.converged_rotation_deg * std::numbers::pi / 180.0;
   const bool weighed = config.weighting == RegistrationConfig::Weighting::covariance;
   const Mat6 prior_information = prior.covariance.ldlt().solve(Mat6::Identity());
@@ -233,6 +237,16 @@ Registration register_scan(const std::vector<Feature>& features, const PosePrior
     if (small || step.tail<3>().norm() < 0.1 * final_m) gate_m = final_m;
   }
   return result;
+}
+
+Mat6 step_information(const std::vector<Feature>& features, const SE3& T_odom_lidar, const PlaneMap& map,
+                      double range_sigma_m, double plane_share, const RegistrationConfig& config) {
+  const double gate_m = final_distance_m(config, range_sigma_m);
+  const std::vector<Match> matches = match(features, T_odom_lidar, map, gate_m);
+  const Weights weights(matches, map, T_odom_lidar, {range_sigma_m, plane_share}, config);
+  const Linearised sums = linearise(matches, T_odom_lidar, weights);
+  const Mat6 part = undrawn_part({sums.A, feigned(matches, T_odom_lidar, weights).A});
+  return part * sums.A * part;
 }
 
 }  // namespace vsslam

@@ -15,7 +15,7 @@ PoseEdge loop_edge(const LoopRecord& record, const PoseGraphConfig& graph) {
   edge.to = record.query;
   edge.T_from_to = record.T_match_query;
   edge.information = record.planes
-                         ? record.planes->information(graph.odometry_variances(), record.edge_variance)
+                         ? record.planes->information(graph.loop_variances(), record.edge_variance)
                          : Mat6::Identity() / record.edge_variance;
   edge.is_loop = true;
   edge.cauchy_scale = record.cauchy_scale;

@@ -4,7 +4,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <functional>
 #include <nlohmann/json.hpp>
 
@@ -19,6 +18,7 @@
 #include "scenarios/sensing.h"
 #include "tests/scenarios/command_line.h"
 #include "tests/scratch.h"
+#include "tests/shared_data.h"
 
 namespace vsslam {
 namespace {
@@ -224,9 +224,9 @@ TEST(Replay, EverySheetOfTheLibraryLoads) {
 }
 
 TEST(Replay, ARealLidarAtRestStaysWhereItIs) {
-  const char* path = std::getenv("VSSLAM_VLP16_PACKETS");
-  if (!path || !fs::exists(path)) GTEST_SKIP() << "set VSSLAM_VLP16_PACKETS to a file of raw packets";
-  ASSERT_EQ(replay(path, {"--rig", "vlp16_only", "--name", "real"}).code, 0);
+  const auto packets = shared_packets();
+  if (packets.empty()) GTEST_SKIP() << "set VSSLAM_VLP16_PACKETS to a file of raw packets";
+  ASSERT_EQ(replay(packets, {"--rig", "vlp16_only", "--name", "real"}).code, 0);
   for (const StampedPose& pose : read_tum(result("real") / "estimate.tum")) {
     EXPECT_LT(pose.pose.translation.norm(), 0.01);
     EXPECT_LT(pose.pose.angle(), 0.01);

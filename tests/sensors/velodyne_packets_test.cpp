@@ -5,7 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <map>
 #include <numbers>
@@ -14,6 +14,7 @@
 #include "sensors/lidar.h"
 #include "tests/scratch.h"
 #include "tests/sensors/shapes.h"
+#include "tests/shared_data.h"
 
 namespace vsslam {
 namespace {
@@ -236,10 +237,9 @@ TEST(RealPackets, TheDefaultModelIsLikeARecordedVlp16) {
 }
 
 TEST(RealPackets, ARecordingAgreesWithTheModel) {
-  const char* path = std::getenv("VSSLAM_VLP16_PACKETS");
-  if (!path || !std::filesystem::exists(path))
-    GTEST_SKIP() << "set VSSLAM_VLP16_PACKETS to a file of raw packets";
-  const std::vector<VelodynePacket> packets = read_packets(path);
+  const std::filesystem::path file = shared_packets();
+  if (file.empty()) GTEST_SKIP() << "set VSSLAM_VLP16_PACKETS to a file of raw packets";
+  const std::vector<VelodynePacket> packets = read_packets(file);
   std::vector<int> azimuths_cdeg;
   for (const VelodynePacket& packet : packets)
     for (const VelodyneBlock& block : packet.blocks) azimuths_cdeg.push_back(block.azimuth_cdeg);

@@ -96,6 +96,19 @@ class DenseTwin {
   std::vector<Eigen::Matrix4d> poses_;
 };
 
+TEST(PoseGraphConfig, OdometryWeighsByItsCovarianceOrByWhatIsSet) {
+  Mat6 covariance = Mat6::Identity();
+  covariance(0, 3) = covariance(3, 0) = 0.5;
+  covariance(5, 5) = 4;
+  PoseGraphConfig config;
+  EXPECT_LT((config.odometry_information(covariance) * covariance - Mat6::Identity()).norm(), 1e-12);
+  config.odometry_translation_variance_m2 = 0.01;
+  const Mat6 information = config.odometry_information(covariance);
+  EXPECT_NEAR(information(0, 0), 1, 1e-12);
+  EXPECT_NEAR(information(5, 5), 100, 1e-9);
+  EXPECT_NEAR(information(0, 3), 0, 1e-12);
+}
+
 TEST(PoseGraph, JacobiansOfAnEdgeAgreeWithDifferences) {
   const RandomStream stream(2, "poses");
   for (int i = 0; i < 20; ++i) {

@@ -75,14 +75,13 @@ TEST(LoopCloser, ScanContextClosesLoopsAgainstTheDirectionOfTravel) {
   EXPECT_GT(against, 10);
 }
 
-TEST(LoopCloser, ARefinedEdgeWeighsAsOdometryWhereThePlanesSeeIt) {
+TEST(LoopCloser, ARefinedEdgeWeighsMoreWhereThePlanesSeeIt) {
   LoopRecord record;
   record.edge_variance = 0.5;
   record.planes.emplace().directions = 1;
   record.planes->scaled_eigenvectors.setIdentity();
   record.planes->scaled_eigenvectors.col(0).swap(record.planes->scaled_eigenvectors.col(3));  // unseen: x
-  const PoseGraphConfig graph{.odometry_rotation_variance_rad2 = 1e-6,
-                              .odometry_translation_variance_m2 = 1e-4};
+  const PoseGraphConfig graph{.loop_rotation_variance_rad2 = 1e-6, .loop_translation_variance_m2 = 1e-4};
   Vec6 expected;
   expected << 1e6, 1e6, 1e6, 2, 1e4, 1e4;
   EXPECT_TRUE(loop_edge(record, graph).information.isApprox(Mat6(expected.asDiagonal()), 1e-12));
