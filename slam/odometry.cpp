@@ -168,6 +168,13 @@ SE3 Odometry::Impl::start_pose() {
                            rest.gyro_bias_sigma_radps, rest.at_rest, rest.accel_bias_mps2};
   prior->start(state);
   coasting.start(rest.at_rest);
+  const bool by_force = config.prior == PriorKind::imu || config.prior == PriorKind::vio;
+  const bool by_imu = by_force || config.prior == PriorKind::wheel_imu;
+  if ((rest.no_gravity && by_force) || (rest.upside_down && by_imu)) {
+    trust.refuse();
+    health.warnings.push_back(fmt::format("prior: the IMU {}: not believed, the LiDAR alone goes on",
+                                          rest.no_gravity ? "does not feel gravity" : "is upside down by its mount"));
+  }
   imu_before_start.clear();
   return state.T_odom_base;
 }

@@ -36,7 +36,7 @@ void PriorTrust::add(const Vec6& shift, const Mat6& claimed, const Mat6& known, 
   remember(rival_m_, size_m(rival));
   good_ = surprise < kGood ? good_ + 1 : 0;
   if (believed_ && mean_ > kRefused && own_m_ > kHarm_m && own_m_ > kWorse * rival_m_) believed_ = false;
-  if (!believed_ && good_ >= kGoodScans) {
+  if (!believed_ && !refused_ && good_ >= kGoodScans) {
     believed_ = true;
     mean_ = 1;
   }

@@ -16,6 +16,8 @@ class PriorTrust {
   /// Whether the prior is worth more than the last velocity. Refused when it is off by five times what it claims, scan
   /// after scan, and by more than the last velocity; taken back once it has been right for two seconds of scans.
   bool believed() const { return believed_; }
+  /// For good: what it is made from cannot be.
+  void refuse() { believed_ = false, refused_ = true; }
   /// By how much its covariance is too small (>= 1): the mean of shift' claimed^-1 shift over what the scan could see.
   double inflation() const { return believed_ && mean_ > 1 ? mean_ : 1; }
 
@@ -23,7 +25,7 @@ class PriorTrust {
   double mean_ = 1;
   double own_m_ = 0, rival_m_ = 0;  // running means of the errors
   int good_ = 0;
-  bool believed_ = true;
+  bool believed_ = true, refused_ = false;
 };
 
 }  // namespace vsslam

@@ -52,6 +52,12 @@ RestAlignment align_at_rest(const std::deque<ImuSample>& samples, const ImuCalib
     result.gyro_bias_sigma_radps = sample_sigma / std::sqrt(static_cast<double>(samples.size()));
     result.accel_bias_mps2 = spread.accel_mean - imu.gravity_mps2 * spread.accel_mean.normalized();
   }
+  constexpr size_t kEnough = 5;
+  constexpr double kLeast = 0.7, kMost = 1.3;  // of gravity: no robot drives with 7 m/s^2
+  const double force = spread.accel_mean.norm() / imu.gravity_mps2;
+  result.no_gravity = samples.size() >= kEnough && !(force > kLeast && force < kMost);
+  result.upside_down = samples.size() >= kEnough && !result.no_gravity && (q_base_imu * spread.accel_mean).z() < 0;
+  if (result.no_gravity || result.upside_down) return result;
   const auto& q_earth_imu = samples.front().q_earth_imu;
   if (!result.at_rest && q_earth_imu)
     result.q_odom_base = level(q_base_imu * (q_earth_imu->conjugate() * Vec3::UnitZ()));

@@ -125,6 +125,21 @@ TEST(RestAlignment, UsesTheDevicesOrientationWhenMoving) {
   EXPECT_NEAR(rpy.y(), 0.02, 1e-9);
 }
 
+TEST(RestAlignment, DoesNotAlignByWhatCannotBe) {
+  RigCalibration calibration = rig();
+  const auto aligned = [&](const Vec3& force_mps2) {
+    std::deque<ImuSample> samples;
+    for (int64_t t = 0; t < 200; t += 10) samples.push_back({ms(t), Vec3::Zero(), force_mps2, std::nullopt});
+    return align_at_rest(samples, calibration.imu, {});
+  };
+  calibration.imu.T_base_imu = SE3();
+  EXPECT_TRUE(aligned({0.1, 0, 0.2}).no_gravity);
+  EXPECT_TRUE(aligned({0, 0, 16}).no_gravity);
+  EXPECT_TRUE(aligned({0, 0, -9.8}).upside_down);
+  EXPECT_EQ(aligned({0, 1, -9.8}).q_odom_base.angularDistance(Quat::Identity()), 0);
+  EXPECT_FALSE(aligned({4, 0, 9.8}).no_gravity || aligned({4, 0, 9.8}).upside_down);
+}
+
 TEST(RestAlignment, IsLevelWithoutSamples) {
   EXPECT_TRUE(align_at_rest({}, {}, {}).q_odom_base.isApprox(Quat::Identity()));
 }

@@ -81,7 +81,9 @@ TEST(LoopCloser, ARefinedEdgeWeighsMoreWhereThePlanesSeeIt) {
   record.planes.emplace().directions = 1;
   record.planes->scaled_eigenvectors.setIdentity();
   record.planes->scaled_eigenvectors.col(0).swap(record.planes->scaled_eigenvectors.col(3));  // unseen: x
-  const PoseGraphConfig graph{.loop_rotation_variance_rad2 = 1e-6, .loop_translation_variance_m2 = 1e-4};
+  PoseGraphConfig graph;
+  graph.loop_rotation_variance_rad2 = 1e-6;
+  graph.loop_translation_variance_m2 = 1e-4;
   Vec6 expected;
   expected << 1e6, 1e6, 1e6, 2, 1e4, 1e4;
   EXPECT_TRUE(loop_edge(record, graph).information.isApprox(Mat6(expected.asDiagonal()), 1e-12));

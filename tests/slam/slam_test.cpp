@@ -2,7 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <limits>
+#include <numbers>
+#include <utility>
+#include <vector>
 
 #include "tests/slam/drive.h"
 
@@ -110,6 +114,26 @@ TEST(SlamSurvives, SpikesAndNonsenseFromTheImu) {
     if (n % 41 == 9) sample.accel_mps2 = Vec3::Constant(-200);
   };
   expect_recovers(options);
+}
+// Whatever the IMU says that cannot be, the result is no worse than twice that of the LiDAR alone.
+TEST(Slam, APriorThatContradictsIsNotBelieved) {
+  DriveOptions options;
+  options.duration_s = 8;
+  options.config.prior = PriorKind::constant_velocity;
+  const double alone_m = drive(room(), circle_in_room(), options).position_rmse_m;
+  options.config.prior = PriorKind::imu;
+  const double gravity_mps2 = rig().imu.gravity_mps2;
+  const std::vector<std::pair<const char*, std::function<void(ImuSample&)>>> faults = {
+      {"force in g", [&](ImuSample& s) { s.accel_mps2 /= gravity_mps2; }},
+      {"rates in degrees", [](ImuSample& s) { s.gyro_radps *= 180 / std::numbers::pi; }},
+      {"no gravity", [&](ImuSample& s) { s.accel_mps2.z() -= gravity_mps2; }},
+      {"upside down", [](ImuSample& s) { s.accel_mps2.z() *= -1; }},
+      {"turns the other way", [](ImuSample& s) { s.gyro_radps.z() *= -1; }},
+  };
+  for (const auto& [name, corrupt] : faults) {
+    options.corrupt_imu = corrupt;
+    EXPECT_LT(drive(room(), circle_in_room(), options).position_rmse_m, 2 * alone_m + 0.001) << name;
+  }
 }
 TEST(SlamSurvives, EmptyScans) {
   const RigCalibration calibration = rig();
