@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <optional>
 #include <utility>
@@ -17,6 +16,7 @@
 #include "slam/lidar/surface_features.h"
 #include "slam/lidar/undistort.h"
 #include "slam/map/map_cloud.h"
+#include "slam/step_covariance.h"
 #include "slam/vision/vio_prior.h"
 
 namespace vsslam {
@@ -63,12 +63,7 @@ struct Odometry::Impl {
   ImuTrack imu_before_start;
   std::optional<StampedPose> last_odom_base;  // of the last scan
   Mat6 last_covariance = Mat6::Zero();        // of the last scan's pose
-  struct KeyPose {
-    SE3 T_odom_base;
-    Mat6 covariance;  // of its registration, beside others'
-  };
-  std::optional<KeyPose> last_key;
-  Mat6 missed_since_key = Mat6::Zero();  // covariance of what the priors since then have missed, at the last scan
+  StepCovariance step;                        // since the last key scan
   std::optional<LidarScan> first_scan;        // until it is known how the robot moved then
   bool lost = false;                          // at the last scan
   OdometryHealth health;
@@ -105,8 +100,7 @@ struct Odometry::Impl {
   void correct_prior(Time stamp, const SE3& T_odom_base, const Mat6& covariance, const Registration& registration);
   std::vector<Feature> features(const char* stage, const Cloud& points_lidar, std::optional<RingOrder>& order,
                                 double voxel_m) const;
-  void add_missed(const Prediction& prediction);
-  Mat6 covariance_since_key(const Registration& registration, const ScanView& view, const SE3& T_odom_base);
+  Mat6 own_covariance(const Registration& registration, const ScanView& view) const;
   void make_key(ScanView& view, OdometryScan& result);
   OdometryScan add(const LidarScan& scan);
 };
@@ -128,7 +122,8 @@ OdometryScan Odometry::Impl::add(const LidarScan& scan) {
   const Mat6 covariance = moved_covariance(registration.covariance, rig.lidar.T_base_lidar.inverse());
   // 5 what the LiDAR has seen tells what the prior is worth, and corrects its biases and velocity
   if (!registration.used_prior_only) judge_prior(scan, T_odom_base, covariance, registration);
-  add_missed(prediction);
+  if (last_odom_base)
+    step.add_prediction(last_odom_base->pose.inverse() * prediction.T_odom_base, last_covariance, prediction.covariance);
   last_covariance = covariance;
   correct_prior(scan.stamp, T_odom_base, covariance, registration);
   prior->add_scan(scan.stamp, seen.points_lidar, T_odom_base);
@@ -152,7 +147,7 @@ OdometryScan Odometry::Impl::add(const LidarScan& scan) {
   result.visual = prior->visual_report();
   // 6 far enough from the last key scan? then it enters the local map
   if (lidar.wants_key(T_odom_base)) {
-    result.covariance_since_key = covariance_since_key(registration, seen, T_odom_base);
+    result.covariance_since_key = step.add_key(T_odom_base, own_covariance(registration, seen));
     make_key(seen, result);
   } else if (!lidar.has_map()) {  // the scans so far held no planes: this one may
     lidar.insert_key(features("features_of_key", seen.points_lidar, seen.order, config.odometry.map_voxel_m),
@@ -372,28 +367,13 @@ std::vector<Feature> Odometry::Impl::features(const char* stage, const Cloud& po
   return select_surface_features(points_lidar, sigma_m, voxel_m, config.odometry.features);
 }
 
-// What a prior adds to the covariance of the last pose is its own error since.
-void Odometry::Impl::add_missed(const Prediction& prediction) {
-  if (!last_odom_base) return;
-  const SE3 T_last_now = last_odom_base->pose.inverse() * prediction.T_odom_base;
-  missed_since_key = moved_covariance(missed_since_key - last_covariance, T_last_now) + prediction.covariance;
-}
-
-// The priors since the last key scan say how far it is, and so do the registrations of both against nearly the same map.
-Mat6 Odometry::Impl::covariance_since_key(const Registration& registration, const ScanView& seen,
-                                          const SE3& T_odom_base) {
-  constexpr double kLeast = 1e-9;  // (0.03 mm)^2
-  const Mat6 known = registration.used_prior_only ? Mat6(Mat6::Identity())
-                     : !lidar.has_map()           ? Mat6(kLeast * Mat6::Identity())  // it is the map
-                         : moved_covariance(lidar.step_covariance(seen.thin, registration.T_odom_lidar),
-                                            rig.lidar.T_base_lidar.inverse());
-  const std::optional<KeyPose> last = std::exchange(last_key, KeyPose{T_odom_base, known});
-  const Eigen::SelfAdjointEigenSolver<Mat6> missed(std::exchange(missed_since_key, Mat6::Zero()));
-  if (!last) return known;
-  const Mat6 by_priors = missed.eigenvectors() * missed.eigenvalues().cwiseMax(kLeast).cwiseInverse().asDiagonal() *
-                         missed.eigenvectors().transpose();
-  const Mat6 by_scans = moved_covariance(last->covariance, last->T_odom_base.inverse() * T_odom_base) + known;
-  return (by_priors + by_scans.ldlt().solve(Mat6::Identity())).ldlt().solve(Mat6::Identity());
+// Of a registration beside others against nearly the same map.
+Mat6 Odometry::Impl::own_covariance(const Registration& registration, const ScanView& seen) const {
+  constexpr double kDefines = 1e-9;  // the first scan is the map
+  if (registration.used_prior_only) return Mat6::Identity();
+  if (!lidar.has_map()) return kDefines * Mat6::Identity();
+  return moved_covariance(lidar.step_covariance(seen.thin, registration.T_odom_lidar),
+                          rig.lidar.T_base_lidar.inverse());
 }
 
 void Odometry::Impl::make_key(ScanView& seen, OdometryScan& result) {
