@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <optional>
 #include <utility>
@@ -91,6 +92,7 @@ struct Odometry::Impl {
   std::optional<LidarScan> with_rings(const LidarScan& scan);
   ScanView view(const LidarScan& scan, const MotionPath& motion);
   Registration align(const ScanView& view, const Prediction& prediction);
+  static bool jumps(const Prediction& prediction, const Prediction& steady);
   void try_last_velocity(const LidarScan& scan, Prediction& prediction, ScanView& view, Registration& registration);
   void settle_motion(const LidarScan& scan, const Prediction& prediction, ScanView& view, Registration& registration);
   void judge_prior(const LidarScan& scan, const SE3& T_odom_base, const Mat6& known,
@@ -192,7 +194,7 @@ Odometry::Impl::Prediction Odometry::Impl::predict(const LidarScan& scan, const 
 Odometry::Impl::Prediction Odometry::Impl::predict(const LidarScan& scan) {
   if (!last_odom_base) {
     Prediction prediction{.T_odom_base = start_pose()};
-    prediction.motion = prior->path(scan.stamp, scan.end);
+    prediction.motion = believed_path(scan.stamp, scan.end);
     return prediction;
   }
   const Mat6 covariance =
@@ -243,6 +245,13 @@ Registration Odometry::Impl::align(const ScanView& seen, const Prediction& predi
   return first;
 }
 
+// Whether a prior turns otherwise than the robot did until now, by more than robots can (three sigma).
+bool Odometry::Impl::jumps(const Prediction& prediction, const Prediction& steady) {
+  const Vec3 turn = so3_log(steady.T_odom_base.rotation.conjugate() * prediction.T_odom_base.rotation);
+  const Mat3 covariance = steady.covariance.topLeftCorner<3, 3>();
+  return turn.dot(covariance.ldlt().solve(turn)) > 9;
+}
+
 // A prior that is wrong beyond the reach of a registration (rates in degrees) would blind the LiDAR. Whichever the scan
 // fits better is right.
 void Odometry::Impl::try_last_velocity(const LidarScan& scan, Prediction& prediction, ScanView& seen,
@@ -252,9 +261,9 @@ void Odometry::Impl::try_last_velocity(const LidarScan& scan, Prediction& predic
       (prediction.T_odom_base.inverse() * registration.T_odom_lidar * rig.lidar.T_base_lidar.inverse()).log();
   const double surprise = shift.dot(prediction.covariance.ldlt().solve(shift)) / 6;
   constexpr double kSurprising = 25;  // five sigma
-  if (!lidar.looks_lost(registration) && surprise < kSurprising) return;
   const Prediction other =
       predict(scan, steady_motion(coasting.twist(), last_odom_base->stamp, scan.end), coasting.covariance(scan.stamp));
+  if (!lidar.looks_lost(registration) && surprise < kSurprising && !jumps(prediction, other)) return;
   ScanView other_seen = view(scan, other.motion);
   const Registration other_registration = align(other_seen, other);
   if (other_registration.used_prior_only ||

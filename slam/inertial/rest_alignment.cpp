@@ -40,24 +40,24 @@ RestAlignment align_at_rest(const std::deque<ImuSample>& samples, const ImuCalib
                             const InertialConfig& config) {
   RestAlignment result;
   if (samples.empty()) return result;
+  constexpr size_t kEnough = 5;
+  constexpr double kLeast = 0.7, kMost = 1.3;  // of gravity: no robot drives with 7 m/s^2
   const Spread spread = spread_of(samples);
-  result.at_rest = samples.size() >= 5 && spread.gyro_sigma < config.rest_gyro_radps &&
+  result.at_rest = samples.size() >= kEnough && spread.gyro_sigma < config.rest_gyro_radps &&
                    spread.accel_sigma < config.rest_accel_mps2 &&
-                   spread.gyro_mean.norm() < 2.0 * config.rest_gyro_radps &&
-                   std::abs(spread.accel_mean.norm() - imu.gravity_mps2) < 2.0 * config.rest_accel_mps2;
+                   spread.gyro_mean.norm() < 2.0 * config.rest_gyro_radps;
   const Quat& q_base_imu = imu.T_base_imu.rotation;
+  const double force = spread.accel_mean.norm() / imu.gravity_mps2;
+  result.no_gravity = samples.size() >= kEnough && !(force > kLeast && force < kMost);
+  result.upside_down = samples.size() >= kEnough && !result.no_gravity && (q_base_imu * spread.accel_mean).z() < 0;
+  if (result.no_gravity || result.upside_down) return result;
+  result.at_rest = result.at_rest && std::abs(force - 1) * imu.gravity_mps2 < 2.0 * config.rest_accel_mps2;
   if (result.at_rest) {
     result.gyro_bias_radps = spread.gyro_mean;
     const double sample_sigma = imu.gyro_noise_radps_rthz * std::sqrt(imu.rate_hz);
     result.gyro_bias_sigma_radps = sample_sigma / std::sqrt(static_cast<double>(samples.size()));
     result.accel_bias_mps2 = spread.accel_mean - imu.gravity_mps2 * spread.accel_mean.normalized();
   }
-  constexpr size_t kEnough = 5;
-  constexpr double kLeast = 0.7, kMost = 1.3;  // of gravity: no robot drives with 7 m/s^2
-  const double force = spread.accel_mean.norm() / imu.gravity_mps2;
-  result.no_gravity = samples.size() >= kEnough && !(force > kLeast && force < kMost);
-  result.upside_down = samples.size() >= kEnough && !result.no_gravity && (q_base_imu * spread.accel_mean).z() < 0;
-  if (result.no_gravity || result.upside_down) return result;
   const auto& q_earth_imu = samples.front().q_earth_imu;
   if (!result.at_rest && q_earth_imu)
     result.q_odom_base = level(q_base_imu * (q_earth_imu->conjugate() * Vec3::UnitZ()));
