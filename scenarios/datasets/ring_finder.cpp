@@ -44,11 +44,7 @@ std::optional<std::string> fault_of_rings(const std::vector<LidarPoint>& points,
     return fmt::format("rings that there are not (such as {}, of {})", rings[example], most_rings);
   if (std::any_of(rings.begin(), rings.end(), [&](double ring) { return ring != rings.front(); }))
     return std::nullopt;
-  constexpr double kFlat = std::numbers::pi / 180;
-  const auto [low, high] = std::minmax_element(
-      points.begin(), points.end(),
-      [](const LidarPoint& a, const LidarPoint& b) { return elevation_rad(a) < elevation_rad(b); });
-  if (elevation_rad(*high) - elevation_rad(*low) < kFlat) return std::nullopt;
+  if (at_one_elevation(points)) return std::nullopt;
   return fmt::format("all points are of ring {}", rings.front());
 }
 

@@ -11,10 +11,9 @@ double elevation_rad(const LidarPoint& p) {
   return std::atan2(static_cast<double>(p.z), std::hypot(static_cast<double>(p.x), static_cast<double>(p.y)));
 }
 
-bool rings_tell(const std::vector<LidarPoint>& points) {
+bool at_one_elevation(const std::vector<LidarPoint>& points) {
   constexpr double kFlat_rad = std::numbers::pi / 180;
-  const auto other = [&](const LidarPoint& p) { return p.ring != points.front().ring; };
-  if (points.empty() || std::any_of(points.begin(), points.end(), other)) return true;
+  if (points.empty()) return true;
   double low = elevation_rad(points.front()), high = low;
   for (const LidarPoint& p : points) {
     const double elevation = elevation_rad(p);
@@ -22,6 +21,11 @@ bool rings_tell(const std::vector<LidarPoint>& points) {
     high = std::max(high, elevation);
   }
   return high - low < kFlat_rad;
+}
+
+bool rings_tell(const std::vector<LidarPoint>& points) {
+  const auto other = [&](const LidarPoint& p) { return p.ring != points.front().ring; };
+  return std::any_of(points.begin(), points.end(), other) || at_one_elevation(points);
 }
 
 size_t nearest(const std::vector<double>& ascending, double value) {

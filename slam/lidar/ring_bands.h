@@ -9,7 +9,9 @@ namespace vsslam {
 
 /// Of a point as measured, before it is undistorted.
 double elevation_rad(const LidarPoint& point);
-/// Whether the points are of several rings, or of one that is a ring: all at one elevation, to a degree.
+/// To a degree, as those of one ring are.
+bool at_one_elevation(const std::vector<LidarPoint>& points);
+/// Whether the points are of several rings, or of one that is a ring.
 bool rings_tell(const std::vector<LidarPoint>& points);
 /// Index of the value next to it.
 size_t nearest(const std::vector<double>& ascending, double value);
