@@ -7,30 +7,20 @@ namespace vsslam {
 
 namespace {
 
-struct BiasAt10m {
-  double tan_incidence, bias_m;
-};
-// Incidence 0, 45, 60, 75, 80, 85 deg.
-constexpr BiasAt10m kBias[] = {
-    {0, 0}, {1, 0.003}, {1.7320508, 0.0075}, {3.7320508, 0.022}, {5.6712818, 0.038}, {11.4300523, 0.091}};
-
 // Beyond 5 sigma nothing is drawn: an echo that strong is always seen, one that weak never.
 constexpr float kDetectionSigmas = 5;
 
 }  // namespace
 
+IncidenceBias incidence_bias(double cos_incidence) {
+  constexpr double kDetector_m = 7.08e-3, kFootprint = 1.32e-5, kCosLast = 0.0871557;  // 85 deg
+  const double c = std::clamp(cos_incidence, kCosLast, 1.0);
+  return {kDetector_m * (1 / c - 1), kFootprint * (1 / (c * c) - 1)};
+}
+
 double incidence_bias_m(double cos_incidence, double range_m) {
-  const double c = std::clamp(cos_incidence, 0.0, 1.0);
-  const double tangent = c > 0.05 ? std::sqrt(1 - c * c) / c : 20;
-  double bias = std::end(kBias)[-1].bias_m;
-  for (size_t i = 1; i < std::size(kBias); ++i) {
-    const BiasAt10m &low = kBias[i - 1], &high = kBias[i];
-    if (tangent > high.tan_incidence) continue;
-    const double u = (tangent - low.tan_incidence) / (high.tan_incidence - low.tan_incidence);
-    bias = low.bias_m + u * (high.bias_m - low.bias_m);
-    break;
-  }
-  return bias * range_m / 10;
+  const IncidenceBias bias = incidence_bias(cos_incidence);
+  return bias.constant_m + bias.per_m * range_m;
 }
 
 LidarErrors::LidarErrors(const LidarConfig& config, size_t lasers, uint64_t seed)
@@ -43,9 +33,11 @@ LidarErrors::LidarErrors(const LidarConfig& config, size_t lasers, uint64_t seed
   const RandomStream bias(seed, "lidar.laser_bias");
   for (size_t laser = 0; laser < lasers; ++laser)
     laser_bias_m_.push_back(static_cast<float>(config.laser_bias_sigma_m * bias.normal(laser)));
-  for (int i = 0; i <= kBiasCells; ++i)
-    bias_per_m_[static_cast<size_t>(i)] = static_cast<float>(
-        config.incidence_bias_scale * incidence_bias_m(static_cast<double>(i) / kBiasCells, 1.0));
+  for (size_t i = 0; i <= kBiasCells; ++i) {
+    const auto [constant_m, per_m] = incidence_bias(static_cast<double>(i) / kBiasCells);
+    bias_constant_m_[i] = static_cast<float>(config.incidence_bias_scale * constant_m);
+    bias_per_m_[i] = static_cast<float>(config.incidence_bias_scale * per_m);
+  }
 }
 
 // Received power against the threshold; random only where noise can decide.
@@ -73,7 +65,7 @@ void LidarErrors::detect(const EchoPacket& echo, size_t laser, int64_t first_cyc
 void LidarErrors::add_bias_and_noise(const EchoPacket& echo, size_t laser, int64_t first_cycle,
                                      float (&range_m)[kLanes]) const {
   const float bias = laser_bias_m_[laser];
-  const float* const per_m_at = bias_per_m_.data();
+  const float *const constant_at = bias_constant_m_.data(), *const per_m_at = bias_per_m_.data();
   float noise[kLanes] = {};
   const auto sigma = static_cast<float>(config_.range_sigma_m);
   if (sigma > 0) normal_.sixteen(range_noise_, first_cycle, laser, noise);
@@ -81,9 +73,10 @@ void LidarErrors::add_bias_and_noise(const EchoPacket& echo, size_t laser, int64
   for (int i = 0; i < kLanes; ++i) {
     const float cell = echo.cos_incidence[i] * kBiasCells, range = echo.mean_range_m[i];
     const int k = std::min(static_cast<int>(cell), kBiasCells - 1);
-    const float low = per_m_at[k], high = per_m_at[k + 1];
-    const float per_m = low + (cell - static_cast<float>(k)) * (high - low);
-    range_m[i] = range + (bias + per_m * range) + sigma * noise[i];
+    const float u = cell - static_cast<float>(k);
+    const float constant = constant_at[k] + u * (constant_at[k + 1] - constant_at[k]);
+    const float per_m = per_m_at[k] + u * (per_m_at[k + 1] - per_m_at[k]);
+    range_m[i] = range + (bias + constant + per_m * range) + sigma * noise[i];
   }
 }
 

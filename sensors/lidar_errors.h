@@ -15,8 +15,15 @@ struct alignas(64) ReportedPacket {
   float intensity[kLanes];
 };
 
-/// Extra range at grazing incidence, m: the slanted footprint lengthens the echo (Laconte et al., ICRA 2019,
-/// measured on an HDL-32E at 10 m; taken as proportional to range, constant beyond 85 deg).
+/// Extra range at grazing incidence: constant_m + per_m * range.
+struct IncidenceBias {
+  double constant_m, per_m;
+};
+
+/// The slanted footprint lengthens the echo (Laconte et al., ICRA 2019, fitted to an HDL-32E). Their two terms, the
+/// detector's 7.08 mm * (1 / cos - 1) and the footprint's 0.0132 mm/m * range * tan^2, are met to 2 % from 1 to 40 m;
+/// constant beyond 85 deg, where they end.
+IncidenceBias incidence_bias(double cos_incidence);
 double incidence_bias_m(double cos_incidence, double range_m);
 
 class LidarErrors {
@@ -36,7 +43,7 @@ class LidarErrors {
   const NormalTable& normal_;
   std::vector<float> laser_bias_m_;
   static constexpr int kBiasCells = 512;
-  std::array<float, kBiasCells + 1> bias_per_m_;  ///< incidence bias per metre of range, by cos(incidence)
+  std::array<float, kBiasCells + 1> bias_constant_m_, bias_per_m_;  ///< incidence bias, by cos(incidence)
   float detection_gain_;
 };
 

@@ -319,9 +319,16 @@ TEST(Lidar, RangesAreWholeSteps) {
 
 TEST(Lidar, IncidenceBiasAsPublished) {
   EXPECT_EQ(incidence_bias_m(1, 10), 0);
-  EXPECT_NEAR(incidence_bias_m(std::cos(45 * kDeg), 10), 0.003, 1e-6);
-  EXPECT_NEAR(incidence_bias_m(std::cos(75 * kDeg), 10), 0.022, 1e-6);
-  EXPECT_NEAR(incidence_bias_m(std::cos(85 * kDeg), 20), 0.182, 1e-6);
+  // The published model with its constants for an HDL-32E, evaluated apart; mm at 1.2, 10 and 40 m.
+  const double published[][4] = {{10, 0.11, 0.11, 0.13},    {30, 1.10, 1.14, 1.27},    {45, 2.95, 3.06, 3.46},
+                                 {60, 7.13, 7.47, 8.67},    {70, 13.74, 14.61, 17.62}, {75, 20.49, 22.11, 27.67},
+                                 {80, 34.20, 37.94, 50.85}, {83, 52.06, 59.79, 86.61}, {85, 76.21, 91.46, 144.89}};
+  for (const auto& [deg, at_1_2_m, at_10_m, at_40_m] : published) {
+    const double c = std::cos(deg * kDeg);
+    EXPECT_NEAR(incidence_bias_m(c, 1.2), 1e-3 * at_1_2_m, 2e-5 * at_1_2_m + 1e-5);
+    EXPECT_NEAR(incidence_bias_m(c, 10), 1e-3 * at_10_m, 2e-5 * at_10_m + 1e-5);
+    EXPECT_NEAR(incidence_bias_m(c, 40), 1e-3 * at_40_m, 2e-5 * at_40_m + 1e-5);
+  }
   LidarConfig config = LidarConfig::ideal();
   config.incidence_bias_scale = 1;
   const LidarMeasurement m =
