@@ -161,16 +161,18 @@ OdometryScan Odometry::Impl::add(const LidarScan& scan) {
 // Base at the origin, yaw 0, gravity along -z.
 SE3 Odometry::Impl::start_pose() {
   const RestAlignment rest = align_at_rest(imu_before_start.samples(), rig.imu, config.inertial);
-  const InitialState state{SE3(rest.q_odom_base, Vec3::Zero()), rest.gyro_bias_radps,
-                           rest.gyro_bias_sigma_radps, rest.at_rest, rest.accel_bias_mps2};
+  const InitialState state{SE3(rest.q_odom_base, Vec3::Zero()), rest.gyro_bias_radps, rest.gyro_bias_sigma_radps,
+                           rest.at_rest, rest.accel_bias_mps2, !rest.no_gravity};
   prior->start(state);
   coasting.start(rest.at_rest);
   const bool by_force = config.prior == PriorKind::imu || config.prior == PriorKind::vio;
   const bool by_imu = by_force || config.prior == PriorKind::wheel_imu;
-  if ((rest.no_gravity && by_force) || (rest.upside_down && by_imu)) {
+  if (by_imu && (rest.upside_down || (rest.no_gravity && by_force))) {
     trust.refuse();
     health.warnings.push_back(fmt::format("prior: the IMU {}: not believed, the LiDAR alone goes on",
                                           rest.no_gravity ? "does not feel gravity" : "is upside down by its mount"));
+  } else if (by_imu && rest.no_gravity) {
+    health.warnings.push_back("prior: the IMU does not feel gravity: its gyroscope and the wheels go on");
   }
   imu_before_start.clear();
   return state.T_odom_base;
@@ -341,6 +343,7 @@ void Odometry::Impl::note_lost(Time stamp, const Registration& registration) {
 
 // What it had learnt came from samples in the wrong unit.
 void Odometry::Impl::restart_prior() {
+  health.wheels_slipped += prior->slips();
   prior = make_prior(config, rig, clock);
   trust = PriorTrust();
   imu_before_start.clear();
@@ -424,6 +427,11 @@ OdometryScan Odometry::add(const LidarScan& scan) {
 OdometryHealth Odometry::health() const {
   OdometryHealth health = impl_->health;
   health.range_sigma_m = impl_->lidar.range_sigma_m();
+  health.wheels_slipped += impl_->prior->slips();
+  constexpr int64_t kOften = 10;  // one scan in so many: a wheel or a floor that is not as the sheet says
+  if (health.wheels_slipped * kOften > health.scans)
+    health.warnings.push_back(fmt::format("wheels: {} of {} scans say other than the IMU how far it went: not believed there",
+                                          health.wheels_slipped, health.scans));
   const std::vector<std::string>& of_units = impl_->imu_units.repairs_said();
   health.repairs.insert(health.repairs.end(), of_units.begin(), of_units.end());
   return health;

@@ -15,6 +15,7 @@ struct OdometryHealth {
   int64_t scans_prior_only = 0;  ///< the LiDAR gave nothing: the prior alone gave the pose
   int64_t scans_unconverged = 0;
   int64_t prior_refused = 0;     ///< scans whose prior contradicted the LiDAR and was not believed
+  int64_t wheels_slipped = 0;    ///< scans since whose predecessor the wheels slid against the IMU and were not believed
   int64_t scans_ringless = 0;    ///< whose rings said nothing, and were derived or done without
   int64_t imu_repaired = 0;      ///< samples whose unit was wrong beyond doubt, and was set right
   /// A stretch of scans in which the pose was not known well enough to be worth a figure.

@@ -100,6 +100,7 @@ Json health_json(const Health& health, Duration stamp_offset) {
           {"scans_prior_only", health.odometry.scans_prior_only},
           {"scans_unconverged", health.odometry.scans_unconverged},
           {"prior_refused", health.odometry.prior_refused},
+          {"wheels_slipped", health.odometry.wheels_slipped},
           {"imu_repaired", health.odometry.imu_repaired},
           {"lost_spans", lost_json(health.odometry.lost, stamp_offset)},
           {"repairs", health.repairs},

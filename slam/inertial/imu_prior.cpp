@@ -43,13 +43,17 @@ ImuPrior::Mat18 ImuPrior::transition(const ImuPreintegration& motion, const Mat3
   return F;
 }
 
-// Of the motion's own noise, in the errors of the state after it.
-ImuPrior::Mat18 ImuPrior::motion_noise(const ImuPreintegration& motion, const Mat3& R_before, const ImuCalibration& imu) {
-  const Mat3 R_j_i = motion.delta_R().toRotationMatrix().transpose();
+// G, of the motion's own noise [phi; v; p] into the errors of the state after it.
+Eigen::Matrix<double, ImuPrior::kStates, 9> ImuPrior::noise_input(const ImuPreintegration& motion, const Mat3& R_before) {
   Eigen::Matrix<double, kStates, 9> G = Eigen::Matrix<double, kStates, 9>::Zero();
   G.block<3, 3>(0, 0).setIdentity();
   G.block<3, 3>(6, 3) = R_before;
-  G.block<3, 3>(3, 6) = R_j_i;
+  G.block<3, 3>(3, 6) = motion.delta_R().toRotationMatrix().transpose();
+  return G;
+}
+
+ImuPrior::Mat18 ImuPrior::motion_noise(const ImuPreintegration& motion, const Mat3& R_before, const ImuCalibration& imu) {
+  const auto G = noise_input(motion, R_before);
   Mat18 Q = G * motion.covariance() * G.transpose();
   Q.diagonal().segment<3>(9).array() += square(imu.gyro_bias_walk_radps2_rthz) * motion.dt_s();
   Q.diagonal().segment<3>(12).array() += square(imu.accel_bias_walk_mps3_rthz) * motion.dt_s();
@@ -63,20 +67,23 @@ void ImuPrior::State::add_to_rest(const Vec18& change) {
   gravity_odom += change.tail<3>();
 }
 
-ImuPrior::ImuPrior(const InertialConfig& config, const RigCalibration& rig)
+ImuPrior::ImuPrior(const InertialConfig& config, const RigCalibration& rig, bool use_wheels)
     : config_(config),
       sheet_(believed(rig.imu, config.imu_noise_factor)),
       imu_(track_limits(config)),
-      fixes_(config) {}
+      without_imu_(config, rig, use_wheels) {}
 
 void ImuPrior::start(const InitialState& state) {
   constexpr double kRestSpeed_mps = 1e-3;
   constexpr double kMovingTilt_rad = 0.1;  // level by the mean specific force, while braking with 1 m/s^2
-  fixes_.start(state.at_rest);
+  without_imu_.start(state);
   start_bias_ = {state.gyro_bias_radps, state.accel_bias_mps2};
   gyro_bias_sigma_radps_ = state.gyro_bias_sigma_radps;
-  const double bias = config_.accel_bias_sigma_mps2, g = sheet_.gravity_mps2;
-  const double tilt = state.at_rest ? bias / g : kMovingTilt_rad;
+  feels_force_ = state.feels_gravity;
+  constexpr double kSteadyFor_s = 0.1;  // an acceleration that nothing measures
+  if (!feels_force_) sheet_.accel_noise_mps2_rthz = config_.unknown_accel_mps2 * std::sqrt(kSteadyFor_s);
+  const double bias = config_.accel_bias_sigma_mps2, g = feels_force_ ? sheet_.gravity_mps2 : 0;
+  const double level_force = state.at_rest ? bias : kMovingTilt_rad * g;
   state_.T_odom_imu = state.T_odom_base * sheet_.T_base_imu;
   state_.bias = start_bias_;
   state_.gravity_odom = {0, 0, -g};
@@ -86,7 +93,7 @@ void ImuPrior::start(const InitialState& state) {
       square(state.at_rest ? kRestSpeed_mps : config_.max_speed_mps / 3));
   state_.P.diagonal().segment<3>(9).setConstant(square(gyro_bias_sigma_radps_));
   state_.P.diagonal().segment<3>(12).setConstant(square(bias));
-  state_.P.diagonal().segment<2>(15).setConstant(square(tilt * g));
+  state_.P.diagonal().segment<2>(15).setConstant(square(level_force));
   rest_.reset();
   if (!state.at_rest) return;
   // Up was found from the specific force f = b - R' gravity: a level bias of b is a tilt of b / g.
@@ -103,59 +110,87 @@ void ImuPrior::start(const InitialState& state) {
   state_.P = 0.5 * (state_.P + state_.P.transpose()).eval();
 }
 
-std::optional<ImuPrior::State> ImuPrior::predict(Time begin, Time end, MotionPath* path) const {
+std::optional<ImuPrior::Prediction> ImuPrior::predict(Time begin, Time end) const {
+  std::optional<ImuSpan> span = cut_span(imu_, begin, end, config_.max_gap_s);
+  if (!span) return std::nullopt;
+  if (!feels_force_)
+    for (ImuSample& sample : *span) sample.accel_mps2.setZero();
   const Vec3& gravity_odom = state_.gravity_odom;
-  const SE3& T_base_imu = sheet_.T_base_imu;
-  ImuPreintegration motion(sheet_, state_.bias);
-  auto before = imu_.at(begin);
-  if (!before) return std::nullopt;
-  std::vector<Time> stamps;
-  for (const ImuSample& sample : imu_.samples())
-    if (sample.stamp > begin && sample.stamp < end) stamps.push_back(sample.stamp);
-  stamps.push_back(end);
   const Quat& q = state_.T_odom_imu.rotation;
-  State state = state_;
-  for (const Time stamp : stamps) {
-    if (stamp <= before->stamp) continue;
-    const auto now = imu_.at(stamp);
-    if (!now || seconds_between(before->stamp, stamp) > config_.max_gap_s) return std::nullopt;
-    motion.add(seconds_between(before->stamp, stamp), before->gyro_radps, before->accel_mps2, now->gyro_radps,
-               now->accel_mps2);
-    before = now;
+  const SE3 T_base_odom = sheet_.T_base_imu * state_.T_odom_imu.inverse(), T_imu_base = sheet_.T_base_imu.inverse();
+  ImuPreintegration motion(sheet_, state_.bias);
+  Prediction prediction{state_, MotionPath(begin)};
+  State& state = prediction.state;
+  for (size_t i = 1; i < span->size(); ++i) {
+    const ImuSample &a = (*span)[i - 1], &b = (*span)[i];
+    if (b.stamp <= a.stamp) continue;
+    motion.add(seconds_between(a.stamp, b.stamp), a.gyro_radps, a.accel_mps2, b.gyro_radps, b.accel_mps2);
     const double dt = motion.dt_s();
     state.v_odom = state_.v_odom + gravity_odom * dt + q * motion.delta_v();
     state.T_odom_imu = {q * motion.delta_R(), state_.T_odom_imu.translation + state_.v_odom * dt +
                                                   0.5 * gravity_odom * dt * dt + q * motion.delta_p()};
-    if (path)
-      path->append(stamp, T_base_imu * state_.T_odom_imu.inverse() * state.T_odom_imu * T_base_imu.inverse());
+    prediction.path.append(b.stamp, T_base_odom * state.T_odom_imu * T_imu_base);
   }
   const Mat3 R = q.toRotationMatrix();
   const Mat18 F = transition(motion, R, state.T_odom_imu.matrix3());
   state.P = F * state_.P * F.transpose() + motion_noise(motion, R, sheet_);
-  return state;
+  measure_way(motion, prediction);
+  return prediction;
+}
+
+// The way of the wheels measures p = R_i' (p_j - p_i), which is off by H e_i + w_p: by the state before the motion and by
+// the noise of its preintegration. The state after it is off by e_j = F e_i + G w. So cov(e_j, p) = F P_i H' + G cov(w, w_p).
+void ImuPrior::measure_way(const ImuPreintegration& motion, Prediction& prediction) const {
+  constexpr double kSlip = 25;  // five sigma
+  const std::optional<Vec3> way_base = without_imu_.way(prediction.path);
+  if (!way_base) return;
+  State& state = prediction.state;
+  const SE3 T_begin_end = prediction.path.end_pose();
+  const Mat3 R_imu_base = sheet_.T_base_imu.matrix3().transpose();
+  const double dt = motion.dt_s();
+  const Mat3 R_before = state_.T_odom_imu.matrix3(), R_after = state.T_odom_imu.matrix3();
+  const Mat3 R_i_odom = R_before.transpose();
+  Eigen::Matrix<double, 3, kStates> H = Eigen::Matrix<double, 3, kStates>::Zero();
+  H.middleCols<3>(0) = hat(R_i_odom * (state_.v_odom * dt + 0.5 * dt * dt * state_.gravity_odom));
+  H.middleCols<3>(6) = dt * R_i_odom;
+  H.middleCols<6>(9) = motion.bias_jacobian().bottomRows<3>();
+  H.middleCols<3>(15) = 0.5 * dt * dt * R_i_odom;
+  const Vec3 sigma_m = way_sigma_m(config_, way_base->norm(), T_begin_end.angle());
+  const Mat3 noise = R_imu_base * sigma_m.cwiseAbs2().asDiagonal() * R_imu_base.transpose();
+  const Vec3 innovation = R_imu_base * (*way_base - T_begin_end.translation);
+  const Mat3 S = H * state_.P * H.transpose() + motion.covariance().bottomRightCorner<3, 3>() + noise;
+  const auto factor = S.ldlt();
+  prediction.slipped = innovation.dot(factor.solve(innovation)) > kSlip;
+  if (prediction.slipped) return;
+  const Mat18 F = transition(motion, R_before, R_after);
+  const Eigen::Matrix<double, kStates, 3> cross =
+      F * state_.P * H.transpose() + noise_input(motion, R_before) * motion.covariance().rightCols<3>();
+  const Eigen::Matrix<double, kStates, 3> K = factor.solve(cross.transpose()).transpose();
+  const Vec18 change = K * innovation;
+  state.P -= K * S * K.transpose();
+  state.P = 0.5 * (state.P + state.P.transpose()).eval();
+  state.T_odom_imu = state.T_odom_imu * SE3::exp(change.head<6>());
+  state.add_to_rest(change);
+  prediction.path = prediction.path.bent(sheet_.T_base_imu.adjoint() * change.head<6>());
 }
 
 MotionPath ImuPrior::path(Time begin, Time end) const {
-  MotionPath path(begin);
-  if (predict(begin, end, &path)) return path;
-  // Samples are missing: constant velocity of the odometry.
-  MotionPath constant(begin);
-  constant.append(end, SE3::exp(fixes_.twist() * seconds_between(begin, end)));
-  return constant;
+  if (std::optional<Prediction> prediction = predict(begin, end)) return prediction->path;
+  return without_imu_.path(begin, end);
 }
 
 Mat6 ImuPrior::covariance(Time end) const {
-  const auto& last = fixes_.last();
-  const std::optional<State> state = last ? predict(last->stamp, end, nullptr) : std::nullopt;
-  if (!state) return fixes_.covariance(end);
-  return moved_covariance(state->P.topLeftCorner<6, 6>(), sheet_.T_base_imu.inverse());
+  const auto& last = fixes().last();
+  const std::optional<Prediction> prediction = last ? predict(last->stamp, end) : std::nullopt;
+  if (!prediction) return without_imu_.covariance(end);
+  return moved_covariance(prediction->state.P.topLeftCorner<6, 6>(), sheet_.T_base_imu.inverse());
 }
 
 // After a gap, or a state gone wrong: the velocity of the fixes, the biases as at the start.
 void ImuPrior::restart(const OdometryFix& fix, double dt_s) {
   const Mat3 gravity = state_.P.bottomRightCorner<3, 3>();
   const double speed_sigma_mps = config_.unknown_accel_mps2 * std::max(dt_s, 0.1);
-  state_.v_odom = fix.T_odom_base.rotation * fixes_.twist().tail<3>();
+  state_.v_odom = fix.T_odom_base.rotation * fixes().twist().tail<3>();
   state_.bias = start_bias_;
   state_.P.setZero();
   state_.P.topLeftCorner<6, 6>() = moved_covariance(fix.covariance, sheet_.T_base_imu);
@@ -205,22 +240,19 @@ void ImuPrior::stand_still() {
 }
 
 void ImuPrior::correct(const OdometryFix& fix) {
-  const auto last = fixes_.last();
-  fixes_.add(fix);
+  const auto last = fixes().last();
+  const std::optional<Prediction> predicted =
+      last && fix.stamp > last->stamp ? predict(last->stamp, fix.stamp) : std::nullopt;
+  without_imu_.correct(fix);
   const SE3 T_odom_imu = fix.T_odom_base * sheet_.T_base_imu;
-  if (last && fix.stamp > last->stamp) {
-    if (std::optional<State> predicted = predict(last->stamp, fix.stamp, nullptr)) {
-      const Vec6 shift = (predicted->T_odom_imu.inverse() * T_odom_imu).log();
-      const auto change =
-          condition_on_pose(predicted->P, shift, moved_covariance(fix.covariance, sheet_.T_base_imu));
-      state_ = *predicted;
-      state_.add_to_rest(change);
-    } else {
-      state_.T_odom_imu = T_odom_imu;
-      restart(fix, seconds_between(last->stamp, fix.stamp));
-    }
+  if (predicted) {
+    const Vec6 shift = (predicted->state.T_odom_imu.inverse() * T_odom_imu).log();
+    state_ = predicted->state;
+    state_.add_to_rest(condition_on_pose(state_.P, shift, moved_covariance(fix.covariance, sheet_.T_base_imu)));
+    if (predicted->slipped) ++slips_;
   }
   state_.T_odom_imu = T_odom_imu;
+  if (last && fix.stamp > last->stamp && !predicted) restart(fix, seconds_between(last->stamp, fix.stamp));
   if (last && !(state_.v_odom.norm() < config_.max_speed_mps)) restart(fix, 1);
   if (last && stands(last->stamp, fix.stamp)) stand_still();
   imu_.forget_before(fix.stamp);

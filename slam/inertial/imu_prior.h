@@ -1,26 +1,28 @@
-// The prior `imu`: an error-state Kalman filter of the IMU's pose, velocity and biases (Sola 2017, arXiv 1711.02508)
-// that preintegration carries from scan to scan and the registered scans correct. Where up is in odom is a part of the
-// state, as in FAST-LIO2: odom is where the first scan was, and what that was tilted by is not known better than the
-// accelerometer's bias.
+// The priors `imu` and `wheel_imu`: an error-state Kalman filter of the IMU's pose, velocity and biases (Sola 2017, arXiv
+// 1711.02508) that preintegration carries from scan to scan, the way of the wheels measures and the registered scans
+// correct. Where up is in odom is a part of the state, as in FAST-LIO2: odom is where the first scan was, and what that
+// was tilted by is not known better than the accelerometer's bias.
 #pragma once
 
-#include "slam/inertial/fix_history.h"
-#include "slam/inertial/imu_track.h"
+#include "slam/inertial/dead_reckoning.h"
+#include "slam/inertial/imu_span.h"
 #include "slam/inertial/motion_prior.h"
-#include "slam/inertial/preintegration.h"
 
 namespace vsslam {
 
 class ImuPrior : public MotionPrior {
  public:
-  ImuPrior(const InertialConfig& config, const RigCalibration& rig);
+  ImuPrior(const InertialConfig& config, const RigCalibration& rig, bool use_wheels);
 
   void start(const InitialState& state) override;
   void add(const ImuSample& sample) override { imu_.add(sample); }
+  void add(const WheelSample& sample) override { without_imu_.add(sample); }
   MotionPath path(Time begin, Time end) const override;
   Mat6 covariance(Time end) const override;
   void correct(const OdometryFix& fix) override;
+  int64_t slips() const override { return slips_; }
   const ImuBias& bias() const { return state_.bias; }
+  const FixHistory& fixes() const { return without_imu_.fixes(); }
 
  private:
   static constexpr int kStates = 18;
@@ -38,9 +40,16 @@ class ImuPrior : public MotionPrior {
     void add_to_rest(const Vec18& change);
   };
   static Mat18 transition(const ImuPreintegration& motion, const Mat3& R_before, const Mat3& R_after);
+  static Eigen::Matrix<double, kStates, 9> noise_input(const ImuPreintegration& motion, const Mat3& R_before);
   static Mat18 motion_noise(const ImuPreintegration& motion, const Mat3& R_before, const ImuCalibration& imu);
-  /// From `begin`, the stamp of the state. Appends the motion to `path` if given. Nothing if samples are missing.
-  std::optional<State> predict(Time begin, Time end, MotionPath* path) const;
+  struct Prediction {
+    State state;
+    MotionPath path;
+    bool slipped = false;  // the wheels, by five sigma: not believed
+  };
+  /// From `begin`, the stamp of the state. Nothing if samples of the IMU are missing.
+  std::optional<Prediction> predict(Time begin, Time end) const;
+  void measure_way(const ImuPreintegration& motion, Prediction& prediction) const;
   void restart(const OdometryFix& fix, double dt_s);
   bool stands(Time from, Time to);
   void stand_still();
@@ -48,8 +57,10 @@ class ImuPrior : public MotionPrior {
   InertialConfig config_;
   ImuCalibration sheet_;  // its noise as believed
   ImuTrack imu_;
-  FixHistory fixes_;
+  DeadReckoning without_imu_;
   State state_;  // at the last fix
+  bool feels_force_ = true;  // else the gyroscope alone tells, and velocity goes on
+  int64_t slips_ = 0;
   ImuBias start_bias_;
   double gyro_bias_sigma_radps_ = 0.01;
   std::optional<ImuBias> rest_;  // what the IMU gives at rest, if it began so

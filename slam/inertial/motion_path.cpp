@@ -17,4 +17,13 @@ SE3 MotionPath::at(Time stamp) const {
   return interpolate(a.pose, b.pose, seconds_between(a.stamp, stamp) / seconds_between(a.stamp, b.stamp));
 }
 
+MotionPath MotionPath::bent(const Vec6& change) const {
+  const Time begin = knots_.front().stamp;
+  const double whole_s = seconds_between(begin, knots_.back().stamp);
+  MotionPath path(begin);
+  for (const StampedPose& knot : knots_)
+    path.append(knot.stamp, knot.pose * SE3::exp(seconds_between(begin, knot.stamp) / whole_s * change));
+  return path;
+}
+
 }  // namespace vsslam

@@ -23,10 +23,9 @@ void InertialConfig::fields(Fields& f) {
 
 std::unique_ptr<MotionPrior> make_motion_prior(PriorKind kind, const InertialConfig& config,
                                                const RigCalibration& rig) {
-  if (kind == PriorKind::imu) return std::make_unique<ImuPrior>(config, rig);
-  const bool gyro = kind == PriorKind::wheel_imu;
   const bool wheels = kind == PriorKind::wheel_imu || kind == PriorKind::wheel;
-  return std::make_unique<DeadReckoning>(config, rig, gyro, wheels);
+  if (kind == PriorKind::imu || kind == PriorKind::wheel_imu) return std::make_unique<ImuPrior>(config, rig, wheels);
+  return std::make_unique<DeadReckoning>(config, rig, wheels);
 }
 
 }  // namespace vsslam

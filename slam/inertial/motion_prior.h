@@ -25,6 +25,8 @@ class MotionPath {
   const SE3& end_pose() const { return knots_.back().pose; }
   /// Geodesic between knots; constant velocity of the nearest piece beyond the last.
   SE3 at(Time stamp) const;
+  /// The same motion with another end, end_pose() * exp(change), approached at a steady rate.
+  MotionPath bent(const Vec6& change) const;
 
  private:
   std::vector<StampedPose> knots_;
@@ -46,10 +48,11 @@ struct InitialState {
   double gyro_bias_sigma_radps = 0.01;
   bool at_rest = false;
   Vec3 accel_bias_mps2 = Vec3::Zero();  ///< IMU frame
+  bool feels_gravity = true;            ///< else the accelerometer is worth nothing
 };
 
-/// vio: camera and IMU, wheel_imu while they restart; wheel_imu: gyroscope and wheels; imu: preintegration; wheel: wheels alone; constant_velocity: the LiDAR
-/// alone.
+/// vio: camera and IMU, wheel_imu while they restart; wheel_imu: IMU and wheels; imu: IMU; wheel: wheels; constant_velocity:
+/// the LiDAR alone.
 enum class PriorKind { vio, wheel_imu, imu, wheel, constant_velocity };
 
 struct InertialConfig {
@@ -95,6 +98,8 @@ class MotionPrior {
   virtual void correct(const OdometryFix& fix) = 0;
   /// The undistorted scan of the last fix.
   virtual void add_scan(Time /*stamp*/, const Cloud& /*points_lidar*/, const SE3& /*T_odom_base*/) {}
+  /// Intervals between scans in which the wheels slid, and were not believed.
+  virtual int64_t slips() const { return 0; }
   /// Of a prior that sees.
   virtual std::optional<VisualReport> visual_report() const { return std::nullopt; }
 };

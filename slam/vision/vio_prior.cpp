@@ -1,6 +1,7 @@
 #include "slam/vision/vio_prior.h"
 
 #include "slam/inertial/pose_covariance.h"
+#include "slam/vision/vio_predict.h"
 
 namespace vsslam {
 
@@ -20,7 +21,7 @@ VioPrior::VioPrior(const VisionConfig& config, const InertialConfig& inertial, c
       tracker_(config.tracker, rig.camera),
       depth_(config.depth, rig),
       vio_(config.vio, rig, track_limits(inertial), clock),
-      fallback_(inertial, rig, true, true),
+      fallback_(inertial, rig, true),
       imu_(track_limits(inertial)) {}
 
 void VioPrior::start(const InitialState& state) {
@@ -52,10 +53,11 @@ void VioPrior::add(const CameraFrame& image) {
 
 // Rotation of the camera between two images by the gyroscope: coordinates of the later frame into the earlier.
 std::optional<Quat> VioPrior::camera_turn(Time from, Time to) const {
-  if (!imu_.at(from) || !imu_.at(to)) return std::nullopt;
-  const Quat q_from_to = fallback_.path(from, to).end_pose().rotation;
-  const Quat& q_base_camera = rig_.camera.T_base_camera.rotation;
-  return q_base_camera.conjugate() * q_from_to * q_base_camera;
+  const std::optional<ImuSpan> span = cut_span(imu_, from, to, kMaxImuGap_s);
+  if (!span) return std::nullopt;
+  const Quat q_from_to = preintegrate(*span, rig_.imu, fallback_.bias()).delta_R();
+  const Quat q_imu_camera = (rig_.imu.T_base_imu.inverse() * rig_.camera.T_base_camera).rotation;
+  return q_imu_camera.conjugate() * q_from_to * q_imu_camera;
 }
 
 void VioPrior::fill_depth(Time stamp, VisualFrame& frame) const {
@@ -123,7 +125,7 @@ VioAid VioPrior::aid(const OdometryFix& fix, const Vec3& unseen_velocity_base_mp
       unseen_velocity_base_mps +
       fix.observed_translation * (fallback_.fixes().twist().tail<3>() - unseen_velocity_base_mps);
   aid.v_odom_mps = fix.T_odom_base.rotation * (v_base + omega_base.cross(rig_.imu.T_base_imu.translation));
-  aid.bias.gyro_radps = fallback_.gyro_bias_radps();
+  aid.bias.gyro_radps = fallback_.bias().gyro_radps;
   if (vio_.status() == VioStatus::tracking) aid.bias.accel_mps2 = vio_.state().bias.accel_mps2;
   return aid;
 }

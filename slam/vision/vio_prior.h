@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "core/stage_clock.h"
-#include "slam/inertial/dead_reckoning.h"
+#include "slam/inertial/imu_prior.h"
 #include "slam/vision/vision_config.h"
 
 namespace vsslam {
@@ -22,6 +22,7 @@ class VioPrior : public MotionPrior {
   Mat6 covariance(Time end) const override;
   void correct(const OdometryFix& fix) override;
   void add_scan(Time stamp, const Cloud& points_lidar, const SE3& T_odom_base) override;
+  int64_t slips() const override { return fallback_.slips(); }
   std::optional<VisualReport> visual_report() const override;
 
  private:
@@ -36,7 +37,7 @@ class VioPrior : public MotionPrior {
   FeatureTracker tracker_;
   LidarDepth depth_;
   VisualInertialOdometry vio_;
-  DeadReckoning fallback_;
+  ImuPrior fallback_;
   ImuTrack imu_;
   std::optional<Time> last_image_;
   SE3 T_start_base_;  // the prior's own motions, one after another, up to the last fix

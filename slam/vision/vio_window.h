@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "slam/vision/imu_span.h"
+#include "slam/vision/vio_predict.h"
 #include "slam/vision/linear_prior.h"
 #include "slam/vision/rest_detector.h"
 #include "slam/vision/vio.h"

@@ -8,9 +8,12 @@
 #include "slam/inertial/pose_covariance.h"
 #include "slam/inertial/prior_trust.h"
 #include "slam/inertial/rest_alignment.h"
+#include "tests/slam/analytic_scene.h"
 
 namespace vsslam {
 namespace {
+
+using namespace testing_scene;
 
 Time ms(int64_t t) {
   return Time{t * 1'000'000};
@@ -70,7 +73,7 @@ TEST(ImuPrior, ATurnTellsABiasFromATilt) {
   std::deque<ImuSample> first;
   for (int64_t t = 0; t <= 100; t += 10) first.push_back(sample(t));
   const RestAlignment rest = align_at_rest(first, calibration.imu, {});
-  ImuPrior prior({}, calibration);
+  ImuPrior prior({}, calibration, false);
   const SE3 T_odom_start(rest.q_odom_base, Vec3::Zero());
   ASSERT_GT(T_odom_start.angle(), 0.004);
   prior.start({T_odom_start, rest.gyro_bias_radps, rest.gyro_bias_sigma_radps, true, rest.accel_bias_mps2});
@@ -81,6 +84,97 @@ TEST(ImuPrior, ATurnTellsABiasFromATilt) {
     prior.correct({.stamp = ms(t), .T_odom_base = T_odom_base});
   }
   EXPECT_LT((prior.bias().accel_mps2 - bias_mps2).norm(), 0.15 * bias_mps2.norm());
+}
+
+SE3 ahead(double t) {
+  return SE3(Quat::Identity(), {1.2 * t, 0, 0});
+}
+
+// From a start in motion the IMU alone does not know how fast it goes.
+TEST(ImuPrior, WheelsTellTheSpeedOfAStartInMotion) {
+  const RigCalibration calibration = rig();
+  const auto end_error_m = [&](bool use_wheels) {
+    ImuPrior prior({}, calibration, use_wheels);
+    prior.start({});
+    Wheels wheels(calibration);
+    for (int64_t t = 0; t <= 200; t += 10) {
+      prior.add(imu_sample(ahead, calibration, ms(t)));
+      prior.add(wheels.advance(ahead, ms(t)));
+    }
+    prior.correct({.stamp = ms(0), .T_odom_base = SE3()});
+    return (prior.path(ms(0), ms(200)).end_pose().translation - Vec3(0.24, 0, 0)).norm();
+  };
+  EXPECT_GT(end_error_m(false), 0.2);
+  EXPECT_LT(end_error_m(true), 2e-3);
+}
+
+// What is not known is the velocity (10 m/s): then the position after a tenth of a second is known as well as the way is.
+TEST(ImuPrior, KnowsItsWayAsWellAsTheWheelsDo) {
+  const RigCalibration calibration = rig();
+  const InertialConfig config;
+  const auto after = [&](bool use_wheels, double scale) {
+    auto prior = std::make_unique<ImuPrior>(config, calibration, use_wheels);
+    prior->start({});
+    Wheels wheels(calibration, scale);
+    for (int64_t t = 0; t <= 100; t += 10) {
+      prior->add(imu_sample(ahead, calibration, ms(t), {.imu = false}));
+      prior->add(wheels.advance(ahead, ms(t)));
+    }
+    prior->correct({.stamp = ms(0), .T_odom_base = SE3()});
+    return prior;
+  };
+  const auto alone = after(false, 1), with = after(true, 1);
+  const Mat6 before = alone->covariance(ms(100)), posterior = with->covariance(ms(100));
+  const Vec3 sigma_m = way_sigma_m(config, 0.12, 0);
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_NEAR(std::sqrt(before(3 + k, 3 + k)), 1, 0.01);
+    EXPECT_NEAR(std::sqrt(posterior(3 + k, 3 + k)), sigma_m[k], 0.05 * sigma_m[k]) << k;
+  }
+}
+
+TEST(ImuPrior, WheelsThatSpinAreNotBelieved) {
+  const RigCalibration calibration = rig();
+  ImuPrior prior({}, calibration, true);
+  prior.start({});
+  Wheels rolling(calibration);
+  double slipped_rad = 0;
+  for (int64_t t = 0; t <= 3200; t += 10) {
+    prior.add(imu_sample(ahead, calibration, ms(t)));
+    WheelSample sample = rolling.advance(ahead, ms(t));
+    if (t > 2000 && t <= 2500) slipped_rad += 0.1;  // 10 rad/s beside the 7 of rolling
+    sample.left_rad += slipped_rad, sample.right_rad += slipped_rad;
+    prior.add(sample);
+    if (t % 100 != 0 || t < 200) continue;
+    const Time begin = ms(t - 200), end = ms(t - 100);
+    if (t > 1000) {
+      const Vec3 off = prior.path(begin, end).end_pose().translation - Vec3(0.12, 0, 0);
+      EXPECT_LT(off.norm(), 5e-3) << t;
+    }
+    prior.correct({.stamp = end, .T_odom_base = ahead(end.seconds())});
+  }
+  EXPECT_EQ(prior.slips(), 5);
+}
+
+TEST(ImuPrior, GoesByGyroscopeAndWheelsWhereTheForceIsNone) {
+  const RigCalibration calibration = rig();
+  const Motion circle = [](double t) {
+    return SE3::from_rpy({0, 0, 0.5 * t}, {2 * std::sin(0.5 * t), 2 * (1 - std::cos(0.5 * t)), 0});
+  };
+  ImuPrior prior({}, calibration, true);
+  prior.start({.T_odom_base = SE3(), .feels_gravity = false});
+  Wheels wheels(calibration);
+  for (int64_t t = 0; t <= 1200; t += 10) {
+    ImuSample sample = imu_sample(circle, calibration, ms(t), {.gyro_bias_radps = 0});
+    sample.accel_mps2.setZero();
+    prior.add(sample);
+    prior.add(wheels.advance(circle, ms(t)));
+    if (t >= 100 && t % 100 == 0 && t <= 1000)
+      prior.correct({.stamp = ms(t - 100), .T_odom_base = circle(0.001 * static_cast<double>(t - 100))});
+  }
+  const SE3 error = (circle(0.9).inverse() * circle(1.2)).inverse() * prior.path(ms(900), ms(1200)).end_pose();
+  EXPECT_LT(error.translation.norm(), 0.01);
+  EXPECT_LT(error.angle(), 5e-3);
+  EXPECT_EQ(prior.slips(), 0);
 }
 
 TEST(PriorTrust, RefusesWhatIsFarOffAndTakesItBackWhenItIsRight) {

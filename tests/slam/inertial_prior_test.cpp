@@ -4,7 +4,6 @@
 #include <limits>
 #include <numbers>
 
-#include "slam/inertial/gyro_bias.h"
 #include "slam/inertial/imu_track.h"
 #include "slam/inertial/motion_prior.h"
 #include "slam/inertial/rest_alignment.h"
@@ -190,22 +189,6 @@ TEST(WheelTrack, GoesOnWhereAnglesWrap) {
     EXPECT_NEAR(wrapped.at(ms(10 * i))->forward_m, whole.at(ms(10 * i))->forward_m, 1e-9) << i;
     EXPECT_NEAR(wrapped.at(ms(10 * i))->yaw_rad, whole.at(ms(10 * i))->yaw_rad, 1e-9) << i;
   }
-}
-
-TEST(GyroBias, ConvergesInObservedDirectionsOnly) {
-  GyroBias bias(1e-5);
-  constexpr double kLidarSigma_rad = 5e-4;
-  bias.start(Vec3::Zero(), 0.01);
-  const Vec3 truth(0.004, -0.003, 0.002);
-  Mat3 observed = Mat3::Identity();
-  observed(0, 0) = 0;  // blind about x
-  for (int i = 0; i < 2000; ++i) bias.correct(-(truth - bias.bias_radps()) * 0.1, observed, kLidarSigma_rad, 0.1);
-  EXPECT_NEAR(bias.bias_radps().x(), 0, 1e-12);
-  EXPECT_NEAR(bias.bias_radps().y(), truth.y(), 1e-4);
-  EXPECT_NEAR(bias.bias_radps().z(), truth.z(), 1e-4);
-  const Vec3 before = bias.bias_radps();
-  bias.correct({0, 0.2, 0}, Mat3::Identity(), kLidarSigma_rad, 0.1);  // a slip of the registration
-  EXPECT_EQ(bias.bias_radps(), before);
 }
 
 }  // namespace

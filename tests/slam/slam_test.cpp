@@ -42,11 +42,20 @@ TEST(Slam, KeepsTheWheelsDistanceInAnEndlessCorridor) {
   DriveOptions options;
   options.duration_s = 12;
   options.wheel_scale = 1.02;
-  const Driven driven = drive(corridor(400), weaving_drive(0, 1.0), options);
-  for (const ScanReport& report : driven.reports) EXPECT_GE(report.degenerate_directions, 1) << report.scan;
-  const SE3 error = driven.T_odom_base_true.back().inverse() * driven.reports.back().T_odom_base;
-  EXPECT_NEAR(error.translation.x(), 0.02 * driven.path_m, 0.02);  // nothing else is known along the axis
-  EXPECT_NEAR(error.translation.y(), 0, 0.03);
+  for (const PriorKind prior : {PriorKind::wheel, PriorKind::wheel_imu}) {
+    options.config.prior = prior;
+    const Driven driven = drive(corridor(400), weaving_drive(0, 1.0), options);
+    for (const ScanReport& report : driven.reports) EXPECT_GE(report.degenerate_directions, 1) << report.scan;
+    const SE3 error = driven.T_odom_base_true.back().inverse() * driven.reports.back().T_odom_base;
+    const double by_wheels_m = 0.02 * driven.path_m;
+    if (prior == PriorKind::wheel) {  // nothing else is known along the axis
+      EXPECT_NEAR(error.translation.x(), by_wheels_m, 0.02);
+    } else {  // an accelerometer that began at rest knows something
+      EXPECT_GT(error.translation.x(), -0.02);
+      EXPECT_LT(error.translation.x(), by_wheels_m + 0.02);
+    }
+    EXPECT_NEAR(error.translation.y(), 0, 0.03);
+  }
 }
 
 TEST(Slam, CorrectsTheWheelsWhereJambsAreSeen) {
@@ -122,7 +131,6 @@ TEST(Slam, APriorThatContradictsIsNotBelieved) {
   options.duration_s = 8;
   options.config.prior = PriorKind::constant_velocity;
   const double alone_m = drive(room(), circle_in_room(), options).position_rmse_m;
-  options.config.prior = PriorKind::imu;
   const double gravity_mps2 = rig().imu.gravity_mps2;
   const Vec3 up_imu = rig().imu.T_base_imu.rotation.conjugate() * Vec3::UnitZ();
   const Mat3 half_turn = so3_exp(std::numbers::pi * up_imu.unitOrthogonal()).toRotationMatrix();
@@ -135,13 +143,17 @@ TEST(Slam, APriorThatContradictsIsNotBelieved) {
        [&](ImuSample& s) { s.accel_mps2 = half_turn * s.accel_mps2, s.gyro_radps = half_turn * s.gyro_radps; }},
       {"turns the other way", [&](ImuSample& s) { s.gyro_radps -= 2 * s.gyro_radps.dot(up_imu) * up_imu; }},
   };
-  for (const auto& [name, corrupt] : faults) {
-    // As long as the robot stands, a bias in degrees is one of rad/s, and bends the first scans.
-    const double bound_m = name == kDegrees ? 0.02 : 2 * alone_m + 0.001;
-    options.corrupt_imu = corrupt;
-    EXPECT_LT(drive(room(), circle_in_room(), options).position_rmse_m, bound_m) << name;
-  }
+  for (const PriorKind prior : {PriorKind::imu, PriorKind::wheel_imu})
+    for (const auto& [name, corrupt] : faults) {
+      // As long as the robot stands, a bias in degrees is one of rad/s, and bends the first scans.
+      const double bound_m = name == kDegrees ? 0.02 : 2 * alone_m + 0.001;
+      options.config.prior = prior;
+      options.corrupt_imu = corrupt;
+      EXPECT_LT(drive(room(), circle_in_room(), options).position_rmse_m, bound_m)
+          << name << (prior == PriorKind::imu ? "" : ", with wheels");
+    }
 }
+
 TEST(SlamSurvives, EmptyScans) {
   const RigCalibration calibration = rig();
   Slam slam({}, calibration, Method::lvi_sam_no_loop);

@@ -4,7 +4,7 @@
 
 #include "core/rng.h"
 #include "slam/vision/imu_factor.h"
-#include "slam/vision/imu_span.h"
+#include "slam/vision/vio_predict.h"
 #include "slam/vision/linear_prior.h"
 #include "slam/vision/reprojection_factor.h"
 #include "slam/vision/rest_factor.h"
