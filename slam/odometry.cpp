@@ -124,8 +124,12 @@ OdometryScan Odometry::Impl::add(const LidarScan& scan) {
   const Mat6 covariance = moved_covariance(registration.covariance, rig.lidar.T_base_lidar.inverse());
   // 5 what the LiDAR has seen tells what the prior is worth, and corrects its biases and velocity
   if (!registration.used_prior_only) judge_prior(scan, T_odom_base, covariance, registration);
-  if (last_odom_base)
-    step.add_prediction(last_odom_base->pose.inverse() * prediction.T_odom_base, last_covariance, prediction.covariance);
+  if (last_odom_base) {
+    step.add_prediction(last_odom_base->pose.inverse() * prediction.T_odom_base, last_covariance, prediction.covariance,
+                        seconds_between(last_odom_base->stamp, scan.stamp), seconds_between(scan.stamp, scan.end));
+    if (!registration.used_prior_only)
+      step.add_registration((prediction.T_odom_base.inverse() * T_odom_base).log(), prediction.covariance, covariance);
+  }
   last_covariance = covariance;
   correct_prior(scan.stamp, T_odom_base, covariance, registration);
   prior->add_scan(scan.stamp, seen.points_lidar, T_odom_base);

@@ -2,18 +2,41 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <cmath>
 #include <utility>
 
 #include "slam/inertial/pose_covariance.h"
 
 namespace vsslam {
 
-void StepCovariance::add_prediction(const SE3& T_last_predicted, const Mat6& last, const Mat6& predicted) {
+void StepCovariance::add_prediction(const SE3& T_last_predicted, const Mat6& last, const Mat6& predicted, double dt_s,
+                                    double scan_s) {
   missed_ = moved_covariance(missed_ - last, T_last_predicted) + predicted;
+  meanwhile_ = scan_s / dt_s * (predicted - moved_covariance(last, T_last_predicted));
 }
 
-Mat6 StepCovariance::add_key(const SE3& T_odom_base, const Mat6& known) {
+void StepCovariance::add_registration(const Vec6& shift, const Mat6& predicted, const Mat6& known) {
+  constexpr double kMemory = 0.95;  // two seconds of scans
+  for (const int block : {0, 1}) {
+    const Vec3 off = shift.segment<3>(3 * block);
+    const auto claimed = predicted.block<3, 3>(3 * block, 3 * block).ldlt();
+    const double seen = 3 - claimed.solve(known.block<3, 3>(3 * block, 3 * block)).trace();
+    if (seen < 0.5) continue;  // the scan had no say
+    surprise_[block] = kMemory * surprise_[block] + (1 - kMemory) * off.dot(claimed.solve(off)) / seen;
+  }
+}
+
+// The pose of a scan is that of its stamp, its points were moved there by the prior: on average they err as the mean of a
+// random walk does, by a third of the variance at its end.
+Mat6 StepCovariance::bend() const {
+  Vec6 factor;
+  factor << Vec3::Constant(std::sqrt(surprise_[0] / 3)), Vec3::Constant(std::sqrt(surprise_[1] / 3));
+  return factor.asDiagonal() * meanwhile_ * factor.asDiagonal();
+}
+
+Mat6 StepCovariance::add_key(const SE3& T_odom_base, const Mat6& known_by_scan) {
   constexpr double kLeast = 1e-9;  // (0.03 mm)^2: differences of covariances may come out as nothing, or less
+  const Mat6 known = known_by_scan + bend();
   const std::optional<Key> last = std::exchange(last_key_, Key{T_odom_base, known});
   const Eigen::SelfAdjointEigenSolver<Mat6> missed(std::exchange(missed_, Mat6::Zero()));
   if (!last) return known;

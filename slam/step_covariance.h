@@ -8,11 +8,15 @@
 namespace vsslam {
 
 /// The priors since the last key scan say how far it is, and so do the registrations of both key scans against nearly the
-/// same map. All covariances are of right perturbations [rotation; translation] of the base.
+/// same map; each of them as well as its scan was undistorted. All covariances are of right perturbations [rotation;
+/// translation] of the base.
 class StepCovariance {
  public:
-  /// A scan's prediction. What it adds to the covariance of the last scan's pose is the prior's own error since.
-  void add_prediction(const SE3& T_last_predicted, const Mat6& last, const Mat6& predicted);
+  /// A scan that takes `scan_s` and was predicted `dt_s` after the last one. What the prediction adds to the covariance of
+  /// the last scan's pose is the prior's own error since.
+  void add_prediction(const SE3& T_last_predicted, const Mat6& last, const Mat6& predicted, double dt_s, double scan_s);
+  /// Where the scan was registered, against where it was predicted, and how well that was known.
+  void add_registration(const Vec6& shift, const Mat6& predicted, const Mat6& known);
   /// A key scan, whose registration errs by `known` beside others against the same map. The covariance of its pose in the
   /// frame of the key scan before; of the first one: `known`.
   Mat6 add_key(const SE3& T_odom_base, const Mat6& known);
@@ -22,8 +26,11 @@ class StepCovariance {
     SE3 T_odom_base;
     Mat6 known;
   };
+  Mat6 bend() const;
   std::optional<Key> last_key_;
-  Mat6 missed_ = Mat6::Zero();  // by the priors since then, at the last scan
+  Mat6 missed_ = Mat6::Zero();   // by the priors since then, at the last scan
+  Mat6 meanwhile_ = Mat6::Zero();  // by the prior while the last scan was taken, as it claims
+  double surprise_[2] = {1, 1};  // of rotation and translation, running means: 1 where the priors err as they claim
 };
 
 }  // namespace vsslam

@@ -119,7 +119,9 @@ Linearised linearise(const std::vector<Match>& matches, const SE3& T_odom_lidar,
   return sums;
 }
 
-// A normal that errs by e has the row J + G e: on average J J' grows by G Cov(e) G', information that no surface gives.
+// A normal that errs by e has the row J + G e and the residual r + e . u, u from the plane's center: on average J J' grows
+// by G Cov(e) G', information that no surface gives, and J r by G Cov(e) u, which draws the scan to where its points meet the
+// centers.
 Linearised feigned(const std::vector<Match>& matches, const SE3& T_odom_lidar, const Weights& weights) {
   const Mat3 R_lidar_odom = T_odom_lidar.matrix3().transpose();
   Linearised sums;
@@ -129,8 +131,10 @@ Linearised feigned(const std::vector<Match>& matches, const SE3& T_odom_lidar, c
       const Vec6 row = point_to_plane_row(m.feature->point_lidar.cast<double>(),
                                           R_lidar_odom * m.plane->axis_odom[k].cast<double>());
       const double variance = m.plane->tilt_variance[k];
+      const double u = m.plane->axis_odom[k].dot(m.point_odom - m.plane->center_odom);
       sums.H.selfadjointView<Eigen::Lower>().rankUpdate(row, variance);
       sums.A.selfadjointView<Eigen::Lower>().rankUpdate(row, variance * w);
+      sums.b -= variance * w * u * row;
     }
   }
   sums.H.triangularView<Eigen::StrictlyUpper>() = sums.H.transpose();
@@ -163,17 +167,14 @@ Mat6 true_part(const Shares& shares) {
   return shares.root(shares.share.cwiseProduct(shares.share));
 }
 
-// What of the solution to believe: a row with noise draws it back by 1 - s of the way since the map's last key scan (as
-// errors in the regressor dilute any regression), on top of the variance 1 / (s^2 M_k) of the rows believed.
-Mat6 undrawn_part(const Shares& shares) {
-  constexpr double kWay_m = 0.5, kTurn_rad = 0.1;  // half of what parts two key scans
+// What of the solution to believe, which the noise of rows draws away by s^-1 M^-1 draw (as errors in the regressor dilute
+// any regression), on top of the variance 1 / (s^2 M_k) of the rows believed.
+Mat6 undrawn_part(const Shares& shares, const Vec6& draw) {
   Vec6 part = Vec6::Zero();
   for (int k = 0; k < 6; ++k) {
     const double s = shares.share[k], information = shares.values[k];
     if (s <= 0) continue;
-    const double away = std::hypot(kTurn_rad * shares.vectors.col(k).head<3>().norm(),
-                                   kWay_m * shares.vectors.col(k).tail<3>().norm());
-    const double drawn = (1 - s) * away;
+    const double drawn = shares.vectors.col(k).dot(draw) / (s * information);
     part[k] = 1 / (1 / (s * s) + information * drawn * drawn);
   }
   return shares.root(part);
@@ -212,7 +213,7 @@ Registration register_scan(const std::vector<Feature>& features, const PosePrior
     const Weights weights(matches, map, result.T_odom_lidar, noise, config);
     const Linearised sums = linearise(matches, result.T_odom_lidar, weights);
     const Linearised feint = feigned(matches, result.T_odom_lidar, weights);
-    const Mat6 H_part = true_part({sums.H, feint.H}), A_part = undrawn_part({sums.A, feint.A});
+    const Mat6 H_part = true_part({sums.H, feint.H}), A_part = undrawn_part({sums.A, feint.A}, feint.b);
     result.information = analyse_information(H_part * sums.H * H_part);
     result.degeneracy = detect_degeneracy(result.information.H, result.correspondences, degeneracy);
     result.scan_information = A_part * sums.A * A_part;
@@ -245,7 +246,8 @@ Mat6 step_information(const std::vector<Feature>& features, const SE3& T_odom_li
   const std::vector<Match> matches = match(features, T_odom_lidar, map, gate_m);
   const Weights weights(matches, map, T_odom_lidar, {range_sigma_m, plane_share}, config);
   const Linearised sums = linearise(matches, T_odom_lidar, weights);
-  const Mat6 part = undrawn_part({sums.A, feigned(matches, T_odom_lidar, weights).A});
+  const Linearised feint = feigned(matches, T_odom_lidar, weights);
+  const Mat6 part = undrawn_part({sums.A, feint.A}, feint.b);
   return part * sums.A * part;
 }
 

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace vsslam {
 namespace {
 
@@ -17,12 +19,29 @@ TEST(StepCovariance, ComesFromThePriorsWhereScansAreBlindAndElseFromBothScans) {
   prior[3] = 4e-6;
   for (int scan = 0; scan < 10; ++scan) {
     const Mat6 predicted = pose + Mat6(prior.asDiagonal());
-    step.add_prediction(SE3(), pose, predicted);
+    step.add_prediction(SE3(), pose, predicted, 0.1, 0);
     pose = predicted;
   }
   const Mat6 covariance = step.add_key(T_step, known.asDiagonal());
   EXPECT_NEAR(covariance(3, 3), 10 * 4e-6, 1e-7);
   EXPECT_NEAR(covariance(4, 4), 2e-6 + 1e-6 * 0.01, 1e-7);  // and the lever of the rotation
+}
+
+// The prior claims 4e-6 from scan to scan, and is off by a quarter of that variance: at the end of a scan it is off by
+// 1e-6, a third of it on average, in both key scans.
+TEST(StepCovariance, CountsByWhatScansWereBent) {
+  StepCovariance step;
+  const Mat6 known = 1e-8 * Mat6::Identity(), claimed = known + 4e-6 * Mat6::Identity();
+  const Vec6 off = Vec6::Constant(std::sqrt(claimed(0, 0)) / 2);
+  const auto scan = [&] {
+    step.add_prediction(SE3(), known, claimed, 0.1, 0.1);
+    step.add_registration(off, claimed, known);
+  };
+  for (int i = 0; i < 200; ++i) scan();
+  step.add_key(SE3(), known);
+  for (int i = 0; i < 200; ++i) scan();
+  const Mat6 covariance = step.add_key(SE3(), known);
+  for (int k = 0; k < 6; ++k) EXPECT_NEAR(covariance(k, k), 2 * (1e-6 / 3 + 1e-8), 2e-8) << k;
 }
 
 }  // namespace
