@@ -122,6 +122,7 @@ OdometryScan Odometry::Impl::add(const LidarScan& scan) {
   settle_motion(scan, prediction, seen, registration);
   const SE3 T_odom_base = registration.T_odom_lidar * rig.lidar.T_base_lidar.inverse();
   const Mat6 covariance = moved_covariance(registration.covariance, rig.lidar.T_base_lidar.inverse());
+  if (lidar.has_map()) lidar.fit_voxel(registration.correspondences);
   // 5 what the LiDAR has seen tells what the prior is worth, and corrects its biases and velocity
   if (!registration.used_prior_only) judge_prior(scan, T_odom_base, covariance, registration);
   if (last_odom_base) {
@@ -156,7 +157,7 @@ OdometryScan Odometry::Impl::add(const LidarScan& scan) {
     result.covariance_since_key = step.add_key(T_odom_base, own_covariance(registration, seen));
     make_key(seen, result);
   } else if (!lidar.has_map()) {  // the scans so far held no planes: this one may
-    lidar.insert_key(features("features_of_key", seen.points_lidar, seen.order, config.odometry.map_voxel_m),
+    lidar.insert_key(features("features_of_key", seen.points_lidar, seen.order, lidar.map_voxel_m()),
                      T_odom_base, rig.lidar.T_base_lidar);
   }
   return result;
@@ -232,9 +233,9 @@ ScanView Odometry::Impl::view(const LidarScan& scan, const MotionPath& motion) {
     seen.order.emplace(scan, seen.points_lidar, range_step_m(lidar.range_sigma_m(), config.odometry.features));
     if (lidar.listens()) lidar.listen(measured_range_sigma_m(*seen.order));
   } else if (lidar.listens()) {
-    lidar.listen(measured_surface_sigma_m(seen.points_lidar, config.odometry.voxel_m, config.odometry.features));
+    lidar.listen(measured_surface_sigma_m(seen.points_lidar, lidar.voxel_m(), config.odometry.features));
   }
-  seen.thin = features("features", seen.points_lidar, seen.order, config.odometry.voxel_m);
+  seen.thin = features("features", seen.points_lidar, seen.order, lidar.voxel_m());
   return seen;
 }
 
@@ -304,7 +305,7 @@ void Odometry::Impl::settle_motion(const LidarScan& scan, const Prediction& pred
       const Vec6 twist = (last_odom_base->pose.inverse() * T_odom_base).log() / dt_s;
       ScanView again = view(*first, steady_motion(twist, first->stamp, first->end));
       lidar.replace_first_key(
-          features("features_of_key", again.points_lidar, again.order, config.odometry.map_voxel_m),
+          features("features_of_key", again.points_lidar, again.order, lidar.map_voxel_m()),
           last_odom_base->pose, rig.lidar.T_base_lidar);
     }
     MotionPath motion(scan.stamp);
@@ -393,16 +394,22 @@ Mat6 Odometry::Impl::own_covariance(const Registration& registration, const Scan
 }
 
 void Odometry::Impl::make_key(ScanView& seen, OdometryScan& result) {
-  const std::vector<Feature> dense =
-      features("features_of_key", seen.points_lidar, seen.order, config.odometry.map_voxel_m);
+  const SE3& T_odom_base = result.report.T_odom_base;
+  const bool first = !lidar.has_map();
+  const auto dense = [&] { return features("features_of_key", seen.points_lidar, seen.order, lidar.map_voxel_m()); };
+  const std::vector<Feature> dense_features = dense();
   const StageTimer timer(clock, "map");
-  lidar.insert_key(dense, result.report.T_odom_base, rig.lidar.T_base_lidar);
+  lidar.insert_key(dense_features, T_odom_base, rig.lidar.T_base_lidar);
+  while (first && lidar.fit_voxel(lidar.matches(seen.thin, T_odom_base * rig.lidar.T_base_lidar))) {
+    seen.thin = features("features", seen.points_lidar, seen.order, lidar.voxel_m());
+    lidar.replace_first_key(dense(), T_odom_base, rig.lidar.T_base_lidar);
+  }
   Cloud features_lidar;
   features_lidar.reserve(seen.thin.size());
   for (const Feature& feature : seen.thin) features_lidar.push_back(feature.point_lidar);
   result.is_key = true;
   result.features_lidar = share(std::move(features_lidar));
-  result.map_points_lidar = share(thin_cloud(seen.points_lidar, 0.5 * config.odometry.voxel_m));
+  result.map_points_lidar = share(thin_cloud(seen.points_lidar, 0.5 * lidar.voxel_m()));
   result.points_lidar = share(std::move(seen.points_lidar));
 }
 
@@ -431,6 +438,7 @@ OdometryScan Odometry::add(const LidarScan& scan) {
 OdometryHealth Odometry::health() const {
   OdometryHealth health = impl_->health;
   health.range_sigma_m = impl_->lidar.range_sigma_m();
+  health.voxel_m = impl_->lidar.voxel_m();
   health.wheels_slipped += impl_->prior->slips();
   constexpr int64_t kOften = 10;  // one scan in so many: a wheel or a floor that is not as the sheet says
   if (health.wheels_slipped * kOften > health.scans)

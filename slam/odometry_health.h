@@ -12,6 +12,7 @@ namespace vsslam {
 struct OdometryHealth {
   int64_t scans = 0;
   double range_sigma_m = 0;  ///< the noise of ranges that the thresholds follow: set, or measured
+  double voxel_m = 0;            ///< features were thinned by, at last
   int64_t scans_prior_only = 0;  ///< the LiDAR gave nothing: the prior alone gave the pose
   int64_t scans_unconverged = 0;
   int64_t prior_refused = 0;     ///< scans whose prior contradicted the LiDAR and was not believed

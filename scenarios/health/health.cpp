@@ -97,6 +97,7 @@ Json health_json(const Health& health, Duration stamp_offset) {
   if (health.camera.present()) sensors["camera"] = camera_json(health.camera);
   return {{"sensors", sensors},
           {"range_sigma_m", health.odometry.range_sigma_m},
+          {"voxel_m", health.odometry.voxel_m},
           {"scans_prior_only", health.odometry.scans_prior_only},
           {"scans_unconverged", health.odometry.scans_unconverged},
           {"prior_refused", health.odometry.prior_refused},

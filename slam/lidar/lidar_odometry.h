@@ -15,14 +15,15 @@
 
 namespace vsslam {
 
-/// Defaults are for indoors; outdoors voxel_m 0.4.
 struct LidarOdometryConfig {
   /// Noise of ranges. Automatic: as the first scans show it, else as the sheet says. Every threshold that is `automatic`
   /// follows from it.
   std::optional<double> range_sigma_m;
   FeatureConfig features;
-  double voxel_m = 0.2;         ///< thinning of the features that are registered and kept with key scans
-  double map_voxel_m = 0.1;     ///< thinning of the features that enter the local map
+  /// Thinning of the features that are registered and kept with key scans. Automatic: 0.2 m, and finer or coarser where a
+  /// scan would leave few or many.
+  std::optional<double> voxel_m;
+  std::optional<double> map_voxel_m;  ///< thinning of the features that enter the local map; automatic: half of voxel_m
   int local_map_keys = 25;      ///< key scans in the local map
   double key_distance_m = 1.0;  ///< a key scan after this far ...
   double key_angle_rad = 0.2;   ///< ... or this much rotation
@@ -44,6 +45,13 @@ class LidarOdometry {
   bool listens() const { return heard_m_.size() < kScansHeard && !config_.range_sigma_m; }
   /// Learns from a scan how noisy the sensor is.
   void listen(double scan_sigma_m);
+
+  double voxel_m() const { return config_.voxel_m.value_or(voxel_m_); }
+  double map_voxel_m() const { return config_.map_voxel_m.value_or(0.5 * voxel_m()); }
+  /// After a scan of which so many features lie on planes. Whether scans are thinned otherwise from now on.
+  bool fit_voxel(int matches);
+  /// Of features with planes of the map.
+  int matches(const std::vector<Feature>& thin_features, const SE3& T_odom_lidar) const;
 
   /// Near the prior; where the prior may miss, or the scan fits much worse there than scans did lately, farther around
   /// it too.
@@ -68,6 +76,7 @@ class LidarOdometry {
   PlaneMap map_;
   std::deque<std::vector<MapPoint>> keys_odom_;  // in the map
   double range_sigma_m_;
+  double voxel_m_ = 0.2;
   std::vector<double> heard_m_;  // noise of the first scans
   double usual_misfit_ = 1, usual_cost_ = 1;  // of the scans so far, running means; 1: none yet
   int search_pause_ = 0, search_waits_ = 0;  // scans: after a search that found nothing the next waits twice as long

@@ -240,6 +240,11 @@ Registration register_scan(const std::vector<Feature>& features, const PosePrior
   return result;
 }
 
+int count_matches(const std::vector<Feature>& features, const SE3& T_odom_lidar, const PlaneMap& map, double range_sigma_m,
+                  const RegistrationConfig& config) {
+  return static_cast<int>(match(features, T_odom_lidar, map, final_distance_m(config, range_sigma_m)).size());
+}
+
 Mat6 step_information(const std::vector<Feature>& features, const SE3& T_odom_lidar, const PlaneMap& map,
                       double range_sigma_m, double plane_share, const RegistrationConfig& config) {
   const double gate_m = final_distance_m(config, range_sigma_m);

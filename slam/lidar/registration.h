@@ -70,6 +70,10 @@ Registration register_scan(const std::vector<Feature>& features, const PosePrior
                            const PlaneMap& map, const ScanNoise& noise, const RegistrationConfig& config,
                            const DegeneracyConfig& degeneracy);
 
+/// Features that lie on planes of the map.
+int count_matches(const std::vector<Feature>& features, const SE3& T_odom_lidar, const PlaneMap& map, double range_sigma_m,
+                  const RegistrationConfig& config);
+
 /// What a scan at T_odom_lidar says of its pose beside that of another scan, which met the same map: errors of planes that
 /// both met move both alike. `plane_share` of a plane's variance is new to each of them.
 Mat6 step_information(const std::vector<Feature>& features, const SE3& T_odom_lidar, const PlaneMap& map,

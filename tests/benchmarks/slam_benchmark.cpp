@@ -39,8 +39,8 @@ struct Prepared {
     scan = scan_at(scene, x_m, Time::from_seconds(x_m));
     points_lidar = undistort(scan, MotionPath(scan.stamp), rig().lidar.T_base_lidar);
     features = thin_features(
-        select_planar_features(scan, points_lidar, kSigma_m, config.features), config.map_voxel_m);
-    thin = thin_features(features, config.voxel_m);
+        select_planar_features(scan, points_lidar, kSigma_m, config.features), odometry.map_voxel_m());
+    thin = thin_features(features, odometry.voxel_m());
     T_odom_lidar = SE3(Quat::Identity(), {x_m, 0.1, 0.2}) * rig().lidar.T_base_lidar;
   }
 };
@@ -69,7 +69,7 @@ BENCHMARK(BM_Features)->Unit(benchmark::kMillisecond);
 
 void BM_Thin(benchmark::State& state) {
   const Prepared& p = corridor_scene();
-  for (auto unused : state) benchmark::DoNotOptimize(thin_features(p.features, p.config.voxel_m));
+  for (auto unused : state) benchmark::DoNotOptimize(thin_features(p.features, p.odometry.voxel_m()));
   state.counters["kept"] = static_cast<double>(p.thin.size());
 }
 BENCHMARK(BM_Thin)->Unit(benchmark::kMillisecond);

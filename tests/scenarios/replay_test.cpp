@@ -229,17 +229,12 @@ TEST(Replay, ARealLidarAtRestStaysWhereItIs) {
   const auto packets = shared_packets();
   if (packets.empty()) GTEST_SKIP() << "set VSSLAM_VLP16_PACKETS to a file of raw packets";
   ASSERT_EQ(replay(packets, {"--rig", "vlp16_only", "--name", "real"}).code, 0);
+  // A small room: as fine as it takes to find surfaces in it.
+  EXPECT_LT(json_of(result("real") / "metrics.json")["health"]["voxel_m"], 0.2);
   for (const StampedPose& pose : read_tum(result("real") / "estimate.tum")) {
-    EXPECT_LT(pose.pose.translation.head<2>().norm(), 0.01);
-    EXPECT_LT(std::abs(pose.pose.translation.z()), 0.024);
-    EXPECT_LT(pose.pose.angle(), 0.01);
+    EXPECT_LT(pose.pose.translation.norm(), 0.004);
+    EXPECT_LT(pose.pose.angle(), 0.004);
   }
-  ASSERT_EQ(replay(packets, {"--rig", "vlp16_only", "--name", "real_remapped", "--set",
-                             "slam.odometry.registration.weighting=remapping"})
-                .code,
-            0);
-  for (const StampedPose& pose : read_tum(result("real_remapped") / "estimate.tum"))
-    EXPECT_LT(pose.pose.translation.norm(), 0.005);
 }
 
 TEST(Replay, ChoosesThePriorByWhatIsThere) {

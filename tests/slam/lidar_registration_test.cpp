@@ -33,12 +33,12 @@ struct Mapped {
   explicit Mapped(const Scene& scene, int scans = 12, const LidarOdometryConfig& settings = {})
       : config(settings), odometry(config, kSigma_m) {
     for (int i = 0; i < scans; ++i)
-      odometry.insert_key(thin_features(features_at(scene, at_x(i - 0.5 * scans), ms(i)), config.map_voxel_m),
+      odometry.insert_key(thin_features(features_at(scene, at_x(i - 0.5 * scans), ms(i)), odometry.map_voxel_m()),
                           at_x(i - 0.5 * scans), rig().lidar.T_base_lidar);
   }
   static Time ms(int i) { return Time{1'000'000 * int64_t{i}}; }
   Registration align(const Scene& scene, const SE3& T_scene_base, const Vec6& offset) {
-    const auto features = thin_features(features_at(scene, T_scene_base, ms(500)), config.voxel_m);
+    const auto features = thin_features(features_at(scene, T_scene_base, ms(500)), odometry.voxel_m());
     return odometry.align(features,
                           {T_scene_base * rig().lidar.T_base_lidar * SE3::exp(offset), claimed_covariance()});
   }
