@@ -63,7 +63,6 @@ struct Odometry::Impl {
   RingBands ring_bands;
   ImuTrack imu_before_start;
   std::optional<StampedPose> last_odom_base;  // of the last scan
-  Mat6 last_covariance = Mat6::Zero();        // of the last scan's pose
   StepCovariance step;                        // since the last key scan
   std::optional<LidarScan> first_scan;        // until it is known how the robot moved then
   bool lost = false;                          // at the last scan
@@ -83,11 +82,12 @@ struct Odometry::Impl {
   struct Prediction {
     SE3 T_odom_base;
     Mat6 covariance = 1e-8 * Mat6::Identity();  // right perturbation
+    Mat6 step_covariance = 1e-8 * Mat6::Identity();  // of the motion since the last scan alone
     MotionPath motion{Time{}};                  // since scan.stamp
   };
   SE3 start_pose();
   MotionPath believed_path(Time begin, Time end) const;
-  Prediction predict(const LidarScan& scan, const MotionPath& path, const Mat6& covariance) const;
+  Prediction predict(const LidarScan& scan, const MotionPath& path, const Mat6& covariance, const Mat6& step) const;
   Prediction predict(const LidarScan& scan);
   std::optional<LidarScan> with_rings(const LidarScan& scan);
   ScanView view(const LidarScan& scan, const MotionPath& motion);
@@ -126,12 +126,11 @@ OdometryScan Odometry::Impl::add(const LidarScan& scan) {
   // 5 what the LiDAR has seen tells what the prior is worth, and corrects its biases and velocity
   if (!registration.used_prior_only) judge_prior(scan, T_odom_base, covariance, registration);
   if (last_odom_base) {
-    step.add_prediction(last_odom_base->pose.inverse() * prediction.T_odom_base, last_covariance, prediction.covariance,
+    step.add_prediction(last_odom_base->pose.inverse() * prediction.T_odom_base, prediction.step_covariance,
                         seconds_between(last_odom_base->stamp, scan.stamp), seconds_between(scan.stamp, scan.end));
     if (!registration.used_prior_only)
       step.add_registration((prediction.T_odom_base.inverse() * T_odom_base).log(), prediction.covariance, covariance);
   }
-  last_covariance = covariance;
   correct_prior(scan.stamp, T_odom_base, covariance, registration);
   prior->add_scan(scan.stamp, seen.points_lidar, T_odom_base);
 
@@ -169,7 +168,6 @@ SE3 Odometry::Impl::start_pose() {
   const InitialState state{SE3(rest.q_odom_base, Vec3::Zero()), rest.gyro_bias_radps, rest.gyro_bias_sigma_radps,
                            rest.at_rest, rest.accel_bias_mps2, !rest.no_gravity};
   prior->start(state);
-  coasting.start(rest.at_rest);
   const bool by_force = config.prior == PriorKind::imu || config.prior == PriorKind::vio;
   const bool by_imu = by_force || config.prior == PriorKind::wheel_imu;
   if (by_imu && (rest.upside_down || (rest.no_gravity && by_force))) {
@@ -189,9 +187,9 @@ MotionPath Odometry::Impl::believed_path(Time begin, Time end) const {
 
 // `path` goes from the last scan to the end of this one.
 Odometry::Impl::Prediction Odometry::Impl::predict(const LidarScan& scan, const MotionPath& path,
-                                                   const Mat6& covariance) const {
+                                                   const Mat6& covariance, const Mat6& step) const {
   const SE3 T_last_begin = path.at(scan.stamp);
-  Prediction prediction{last_odom_base->pose * T_last_begin, covariance, MotionPath(scan.stamp)};
+  Prediction prediction{last_odom_base->pose * T_last_begin, covariance, step, MotionPath(scan.stamp)};
   const SE3 T_begin_last = T_last_begin.inverse();
   for (const StampedPose& knot : path.knots())
     prediction.motion.append(knot.stamp, T_begin_last * knot.pose);
@@ -204,9 +202,10 @@ Odometry::Impl::Prediction Odometry::Impl::predict(const LidarScan& scan) {
     prediction.motion = believed_path(scan.stamp, scan.end);
     return prediction;
   }
-  const Mat6 covariance =
-      trust.believed() ? Mat6(trust.inflation() * prior->covariance(scan.stamp)) : coasting.covariance(scan.stamp);
-  return predict(scan, believed_path(last_odom_base->stamp, scan.end), covariance);
+  const MotionPath path = believed_path(last_odom_base->stamp, scan.end);
+  if (!trust.believed()) return predict(scan, path, coasting.covariance(scan.stamp), coasting.step_covariance(scan.stamp));
+  return predict(scan, path, trust.inflation() * prior->covariance(scan.stamp),
+                 trust.inflation() * prior->step_covariance(scan.stamp));
 }
 
 // A scan whose rings say nothing, with those that its elevations give; or none, if they do not gather. Nothing if there is
@@ -269,7 +268,8 @@ void Odometry::Impl::try_last_velocity(const LidarScan& scan, Prediction& predic
   const double surprise = shift.dot(prediction.covariance.ldlt().solve(shift)) / 6;
   constexpr double kSurprising = 25;  // five sigma
   const Prediction other =
-      predict(scan, steady_motion(coasting.twist(), last_odom_base->stamp, scan.end), coasting.covariance(scan.stamp));
+      predict(scan, steady_motion(coasting.twist(), last_odom_base->stamp, scan.end), coasting.covariance(scan.stamp),
+              coasting.step_covariance(scan.stamp));
   if (!lidar.looks_lost(registration) && surprise < kSurprising && !jumps(prediction, other)) return;
   ScanView other_seen = view(scan, other.motion);
   const Registration other_registration = align(other_seen, other);
@@ -328,6 +328,7 @@ void Odometry::Impl::judge_prior(const LidarScan& scan, const SE3& T_odom_base, 
   constexpr double kBlind_m = 0.05;  // a scan that sees a direction worse does not judge in it
   const Eigen::SelfAdjointEigenSolver<Mat6> seen(registration.scan_information, Eigen::EigenvaluesOnly);
   const bool blind = seen.eigenvalues()[0] < 1 / (kBlind_m * kBlind_m);
+  if (blind) ++health.scans_blind;
   trust.add(step_from(by_prior), prior->covariance(scan.stamp), known, step_from(by_velocity), blind);
   if (!trust.believed()) ++health.prior_refused;
   if (before && !trust.believed())

@@ -14,6 +14,7 @@ struct OdometryHealth {
   double range_sigma_m = 0;  ///< the noise of ranges that the thresholds follow: set, or measured
   double voxel_m = 0;            ///< features were thinned by, at last
   int64_t scans_prior_only = 0;  ///< the LiDAR gave nothing: the prior alone gave the pose
+  int64_t scans_blind = 0;       ///< that saw some direction worse than 5 cm: along it the prior decided
   int64_t scans_unconverged = 0;
   int64_t prior_refused = 0;     ///< scans whose prior contradicted the LiDAR and was not believed
   int64_t wheels_slipped = 0;    ///< scans since whose predecessor the wheels slid against the IMU and were not believed

@@ -1,7 +1,6 @@
 #include "slam/step_covariance.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <utility>
 
@@ -9,10 +8,10 @@
 
 namespace vsslam {
 
-void StepCovariance::add_prediction(const SE3& T_last_predicted, const Mat6& last, const Mat6& predicted, double dt_s,
-                                    double scan_s) {
-  missed_ = moved_covariance(missed_ - last, T_last_predicted) + predicted;
-  meanwhile_ = scan_s / dt_s * (predicted - moved_covariance(last, T_last_predicted));
+void StepCovariance::add_prediction(const SE3& T_last_predicted, const Mat6& step, double dt_s, double scan_s) {
+  missed_ = moved_covariance(missed_, T_last_predicted) + step;
+  ++steps_;
+  meanwhile_ = scan_s / dt_s * step;
 }
 
 void StepCovariance::add_registration(const Vec6& shift, const Mat6& predicted, const Mat6& known) {
@@ -35,16 +34,14 @@ Mat6 StepCovariance::bend() const {
 }
 
 Mat6 StepCovariance::add_key(const SE3& T_odom_base, const Mat6& known_by_scan) {
-  constexpr double kLeast = 1e-9;  // (0.03 mm)^2: differences of covariances may come out as nothing, or less
   const Mat6 known = known_by_scan + bend();
   const std::optional<Key> last = std::exchange(last_key_, Key{T_odom_base, known});
-  const Eigen::SelfAdjointEigenSolver<Mat6> missed(std::exchange(missed_, Mat6::Zero()));
+  // The error of a velocity lasts: n steps that err alike have n times the variance of n that err by themselves.
+  const Mat6 missed = std::exchange(steps_, 0) * std::exchange(missed_, Mat6::Zero());
   if (!last) return known;
-  const Mat6 by_priors = missed.eigenvectors() *
-                         missed.eigenvalues().cwiseMax(kLeast).cwiseInverse().asDiagonal() *
-                         missed.eigenvectors().transpose();
   const Mat6 scans = moved_covariance(last->known, last->T_odom_base.inverse() * T_odom_base) + known;
-  return (by_priors + scans.ldlt().solve(Mat6::Identity())).ldlt().solve(Mat6::Identity());
+  const Mat6 by_priors = missed.ldlt().solve(Mat6::Identity()), by_scans = scans.ldlt().solve(Mat6::Identity());
+  return (by_priors + by_scans).ldlt().solve(Mat6::Identity());
 }
 
 }  // namespace vsslam

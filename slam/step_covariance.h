@@ -12,9 +12,8 @@ namespace vsslam {
 /// translation] of the base.
 class StepCovariance {
  public:
-  /// A scan that takes `scan_s` and was predicted `dt_s` after the last one. What the prediction adds to the covariance of
-  /// the last scan's pose is the prior's own error since.
-  void add_prediction(const SE3& T_last_predicted, const Mat6& last, const Mat6& predicted, double dt_s, double scan_s);
+  /// A scan that takes `scan_s` and was predicted `dt_s` after the last one, with the covariance `step` of T_last_predicted.
+  void add_prediction(const SE3& T_last_predicted, const Mat6& step, double dt_s, double scan_s);
   /// Where the scan was registered, against where it was predicted, and how well that was known.
   void add_registration(const Vec6& shift, const Mat6& predicted, const Mat6& known);
   /// A key scan, whose registration errs by `known` beside others against the same map. The covariance of its pose in the
@@ -28,8 +27,9 @@ class StepCovariance {
   };
   Mat6 bend() const;
   std::optional<Key> last_key_;
-  Mat6 missed_ = Mat6::Zero();   // by the priors since then, at the last scan
+  Mat6 missed_ = Mat6::Zero();     // by the priors since then, at the last scan, as if each step erred by itself
   Mat6 meanwhile_ = Mat6::Zero();  // by the prior while the last scan was taken, as it claims
+  double steps_ = 0;
   double surprise_[2] = {1, 1};  // of rotation and translation, running means: 1 where the priors err as they claim
 };
 

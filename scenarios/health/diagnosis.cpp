@@ -11,6 +11,7 @@ namespace {
 
 // In so many scans without the LiDAR the robot's path is the prior's, not this method's.
 constexpr double kWorthlessShare = 0.5;
+constexpr double kFollowedShare = 0.1;  // of the scans: so many more say nothing of what the prior says
 // So long a robot at walking pace is not seen for half a metre.
 constexpr double kLongGap_s = 0.5;
 // Fewer intervals than this are a sensor's slowness, not a gap.
@@ -137,7 +138,7 @@ class Diagnosis {
   void wheels() {
     const WheelsHealth& wheels = health_.wheels;
     const WheelCalibration& sheet = rig_.wheels;
-    if (wheels.travel_scale && off(*wheels.travel_scale, kTravelScale))
+    if (wheels.travel_scale && !follows_prior() && off(*wheels.travel_scale, kTravelScale))
       warn(
           "wheels: they travel {:.2f} times as far as the LiDAR: wheels.wheel_radius_m is {:.4g}, {:.4g} "
           "would fit",
@@ -162,7 +163,12 @@ class Diagnosis {
     if (health_.blind_share() > kBlindShare)
       warn("lidar: it gave nothing in {} of {} scans ({:.0f} %): there the prior alone is the pose",
            health_.odometry.scans_prior_only, health_.odometry.scans, 100 * health_.blind_share());
+    if (follows_prior())
+      warn("lidar: {} of {} scans saw one direction worse than 5 cm: along it the trajectory is the prior's",
+           health_.odometry.scans_blind, health_.odometry.scans);
   }
+
+  bool follows_prior() const { return share(health_.odometry.scans_blind, health_.odometry.scans) > kFollowedShare; }
 
   void worth() {
     const LidarHealth& lidar = health_.lidar;

@@ -99,6 +99,7 @@ Json health_json(const Health& health, Duration stamp_offset) {
           {"range_sigma_m", health.odometry.range_sigma_m},
           {"voxel_m", health.odometry.voxel_m},
           {"scans_prior_only", health.odometry.scans_prior_only},
+          {"scans_blind", health.odometry.scans_blind},
           {"scans_unconverged", health.odometry.scans_unconverged},
           {"prior_refused", health.odometry.prior_refused},
           {"wheels_slipped", health.odometry.wheels_slipped},

@@ -66,13 +66,17 @@ std::optional<Vec3> DeadReckoning::way(const MotionPath& path) const {
   return knots.size() > 1 ? std::optional(way) : std::nullopt;
 }
 
+std::optional<double> DeadReckoning::rolled_m(Time from, Time to) const {
+  const auto a = wheels_.at(from), b = wheels_.at(to);
+  return a && b ? std::optional(b->forward_m - a->forward_m) : std::nullopt;
+}
+
 // What the wheels leave open, the velocity of the last fixes says.
-Mat6 DeadReckoning::covariance(Time end) const {
+Mat6 DeadReckoning::covariance(Time end, const Mat6& last_pose, Mat6 covariance) const {
   const auto& last = fixes_.last();
-  Mat6 covariance = fixes_.covariance(end);
   if (!last || end <= last->stamp || !wheels_.at(last->stamp) || !wheels_.at(end)) return covariance;
   const SE3 T_last_end = path(last->stamp, end).end_pose();
-  const Mat6 known = moved_covariance(last->covariance, T_last_end);
+  const Mat6 known = moved_covariance(last_pose, T_last_end);
   const double turn_rad = config_.wheel_turn_slip * T_last_end.angle() + 0.01 * seconds_between(last->stamp, end);
   covariance(2, 2) = known(2, 2) + turn_rad * turn_rad;
   covariance.bottomRightCorner<3, 3>() = known.bottomRightCorner<3, 3>();
@@ -80,6 +84,14 @@ Mat6 DeadReckoning::covariance(Time end) const {
   covariance.topRightCorner<3, 3>().setZero();
   covariance.bottomLeftCorner<3, 3>().setZero();
   return covariance;
+}
+
+Mat6 DeadReckoning::covariance(Time end) const {
+  return covariance(end, fixes_.last() ? fixes_.last()->covariance : Mat6::Zero(), fixes_.covariance(end));
+}
+
+Mat6 DeadReckoning::step_covariance(Time end) const {
+  return covariance(end, Mat6::Zero(), fixes_.step_covariance(end));
 }
 
 void DeadReckoning::correct(const OdometryFix& fix) {

@@ -6,8 +6,8 @@ namespace vsslam {
 
 // The velocity changes by up to a dt from interval to interval, and is steady within one: a shift is taken for a wrong
 // velocity, once. (With a steady acceleration instead it would be taken for twice the velocity, at the interval's end.)
-FixHistory::Mat12 FixHistory::predicted(double dt_s) const {
-  Mat12 P = P_;
+FixHistory::Mat12 FixHistory::predicted(const Mat12& before, double dt_s) const {
+  Mat12 P = before;
   const double turn_radps = config_.unknown_turn_radps2 * dt_s, speed_mps = config_.unknown_accel_mps2 * dt_s;
   P.diagonal().segment<3>(6).array() += turn_radps * turn_radps;
   P.diagonal().tail<3>().array() += speed_mps * speed_mps;
@@ -19,13 +19,17 @@ FixHistory::Mat12 FixHistory::predicted(double dt_s) const {
 
 Mat6 FixHistory::covariance(Time end) const {
   if (!last_) return Mat6::Identity();
-  return predicted(seconds_between(last_->stamp, end)).topLeftCorner<6, 6>();
+  return predicted(P_, seconds_between(last_->stamp, end)).topLeftCorner<6, 6>();
+}
+
+Mat6 FixHistory::step_covariance(Time end) const {
+  if (!last_) return Mat6::Identity();
+  return predicted(of_exact_pose(P_), seconds_between(last_->stamp, end)).topLeftCorner<6, 6>();
 }
 
 void FixHistory::add(const OdometryFix& fix) {
   if (!last_ || fix.stamp <= last_->stamp) {
-    const double turn_radps = at_rest_ ? 0.02 : config_.max_turn_radps / 3;
-    const double speed_mps = at_rest_ ? 0.02 : config_.max_speed_mps / 3;
+    const double turn_radps = config_.max_turn_radps / 3, speed_mps = config_.max_speed_mps / 3;
     P_.setZero();
     P_.topLeftCorner<6, 6>() = fix.covariance;
     P_.diagonal().segment<3>(6).setConstant(turn_radps * turn_radps);
@@ -34,7 +38,7 @@ void FixHistory::add(const OdometryFix& fix) {
     return;
   }
   const double dt_s = seconds_between(last_->stamp, fix.stamp);
-  P_ = predicted(dt_s);
+  P_ = predicted(P_, dt_s);
   const SE3 predicted_pose = last_->T_odom_base * SE3::exp(twist_ * dt_s);
   const Vec6 shift = (predicted_pose.inverse() * fix.T_odom_base).log();
   const Vec6 change = condition_on_pose(P_, shift, fix.covariance).tail<6>();

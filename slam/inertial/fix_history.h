@@ -12,8 +12,7 @@ class FixHistory {
  public:
   explicit FixHistory(const InertialConfig& config) : config_(config) {}
 
-  /// The twist before the first fix is zero, and is known that well if the robot is at rest.
-  void start(bool at_rest) { at_rest_ = at_rest; }
+  /// What the twist is before the second fix nobody knows.
   void add(const OdometryFix& fix);
 
   const std::optional<OdometryFix>& last() const { return last_; }
@@ -21,15 +20,17 @@ class FixHistory {
   const Vec6& twist() const { return twist_; }
   /// Of T_odom_base at `end`, the twist continued from the last fix; right perturbation.
   Mat6 covariance(Time end) const;
+  /// Of the motion since then alone.
+  Mat6 step_covariance(Time end) const;
 
  private:
   using Mat12 = Eigen::Matrix<double, 12, 12>;
-  Mat12 predicted(double dt_s) const;
+  Mat12 predicted(const Mat12& P, double dt_s) const;
 
   InertialConfig config_;
   std::optional<OdometryFix> last_;
   Vec6 twist_ = Vec6::Zero();
-  bool at_rest_ = false, moving_known_ = false;
+  bool moving_known_ = false;
   Mat12 P_ = Mat12::Zero();  // of [pose; twist]
 };
 

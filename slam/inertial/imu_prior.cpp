@@ -74,9 +74,7 @@ ImuPrior::ImuPrior(const InertialConfig& config, const RigCalibration& rig, bool
       without_imu_(config, rig, use_wheels) {}
 
 void ImuPrior::start(const InitialState& state) {
-  constexpr double kRestSpeed_mps = 1e-3;
   constexpr double kMovingTilt_rad = 0.1;  // level by the mean specific force, while braking with 1 m/s^2
-  without_imu_.start(state);
   start_bias_ = {state.gyro_bias_radps, state.accel_bias_mps2};
   gyro_bias_sigma_radps_ = state.gyro_bias_sigma_radps;
   feels_force_ = state.feels_gravity;
@@ -89,8 +87,8 @@ void ImuPrior::start(const InitialState& state) {
   state_.gravity_odom = {0, 0, -g};
   state_.P.setZero();
   state_.P.diagonal().head<6>().setConstant(1e-8);  // the first pose defines odom
-  state_.P.diagonal().segment<3>(6).setConstant(
-      square(state.at_rest ? kRestSpeed_mps : config_.max_speed_mps / 3));
+  // At rest or at a constant speed: an IMU is as quiet. Wheels tell, or the second scan.
+  state_.P.diagonal().segment<3>(6).setConstant(square(config_.max_speed_mps / 3));
   state_.P.diagonal().segment<3>(9).setConstant(square(gyro_bias_sigma_radps_));
   state_.P.diagonal().segment<3>(12).setConstant(square(bias));
   state_.P.diagonal().segment<2>(15).setConstant(square(level_force));
@@ -110,37 +108,37 @@ void ImuPrior::start(const InitialState& state) {
   state_.P = 0.5 * (state_.P + state_.P.transpose()).eval();
 }
 
-std::optional<ImuPrior::Prediction> ImuPrior::predict(Time begin, Time end) const {
-  std::optional<ImuSpan> span = cut_span(imu_, begin, end, config_.max_gap_s);
+std::optional<ImuPrior::Prediction> ImuPrior::predict(const State& before, Time begin, Time end) const {
+  std::optional<ImuSpan> span = cut_span(imu_, begin, end, imu_.max_gap_s());
   if (!span) return std::nullopt;
   if (!feels_force_)
     for (ImuSample& sample : *span) sample.accel_mps2.setZero();
-  const Vec3& gravity_odom = state_.gravity_odom;
-  const Quat& q = state_.T_odom_imu.rotation;
-  const SE3 T_base_odom = sheet_.T_base_imu * state_.T_odom_imu.inverse(), T_imu_base = sheet_.T_base_imu.inverse();
-  ImuPreintegration motion(sheet_, state_.bias);
-  Prediction prediction{state_, MotionPath(begin)};
+  const Vec3& gravity_odom = before.gravity_odom;
+  const Quat& q = before.T_odom_imu.rotation;
+  const SE3 T_base_odom = sheet_.T_base_imu * before.T_odom_imu.inverse(), T_imu_base = sheet_.T_base_imu.inverse();
+  ImuPreintegration motion(sheet_, before.bias);
+  Prediction prediction{before, MotionPath(begin)};
   State& state = prediction.state;
   for (size_t i = 1; i < span->size(); ++i) {
     const ImuSample &a = (*span)[i - 1], &b = (*span)[i];
     if (b.stamp <= a.stamp) continue;
     motion.add(seconds_between(a.stamp, b.stamp), a.gyro_radps, a.accel_mps2, b.gyro_radps, b.accel_mps2);
     const double dt = motion.dt_s();
-    state.v_odom = state_.v_odom + gravity_odom * dt + q * motion.delta_v();
-    state.T_odom_imu = {q * motion.delta_R(), state_.T_odom_imu.translation + state_.v_odom * dt +
+    state.v_odom = before.v_odom + gravity_odom * dt + q * motion.delta_v();
+    state.T_odom_imu = {q * motion.delta_R(), before.T_odom_imu.translation + before.v_odom * dt +
                                                   0.5 * gravity_odom * dt * dt + q * motion.delta_p()};
     prediction.path.append(b.stamp, T_base_odom * state.T_odom_imu * T_imu_base);
   }
   const Mat3 R = q.toRotationMatrix();
   const Mat18 F = transition(motion, R, state.T_odom_imu.matrix3());
-  state.P = F * state_.P * F.transpose() + motion_noise(motion, R, sheet_);
-  measure_way(motion, prediction);
+  state.P = F * before.P * F.transpose() + motion_noise(motion, R, sheet_);
+  measure_way(before, motion, prediction);
   return prediction;
 }
 
 // The way of the wheels measures p = R_i' (p_j - p_i), which is off by H e_i + w_p: by the state before the motion and by
 // the noise of its preintegration. The state after it is off by e_j = F e_i + G w. So cov(e_j, p) = F P_i H' + G cov(w, w_p).
-void ImuPrior::measure_way(const ImuPreintegration& motion, Prediction& prediction) const {
+void ImuPrior::measure_way(const State& before, const ImuPreintegration& motion, Prediction& prediction) const {
   constexpr double kSlip = 25;  // five sigma
   const std::optional<Vec3> way_base = without_imu_.way(prediction.path);
   if (!way_base) return;
@@ -148,23 +146,23 @@ void ImuPrior::measure_way(const ImuPreintegration& motion, Prediction& predicti
   const SE3 T_begin_end = prediction.path.end_pose();
   const Mat3 R_imu_base = sheet_.T_base_imu.matrix3().transpose();
   const double dt = motion.dt_s();
-  const Mat3 R_before = state_.T_odom_imu.matrix3(), R_after = state.T_odom_imu.matrix3();
+  const Mat3 R_before = before.T_odom_imu.matrix3(), R_after = state.T_odom_imu.matrix3();
   const Mat3 R_i_odom = R_before.transpose();
   Eigen::Matrix<double, 3, kStates> H = Eigen::Matrix<double, 3, kStates>::Zero();
-  H.middleCols<3>(0) = hat(R_i_odom * (state_.v_odom * dt + 0.5 * dt * dt * state_.gravity_odom));
+  H.middleCols<3>(0) = hat(R_i_odom * (before.v_odom * dt + 0.5 * dt * dt * before.gravity_odom));
   H.middleCols<3>(6) = dt * R_i_odom;
   H.middleCols<6>(9) = motion.bias_jacobian().bottomRows<3>();
   H.middleCols<3>(15) = 0.5 * dt * dt * R_i_odom;
   const Vec3 sigma_m = way_sigma_m(config_, way_base->norm(), T_begin_end.angle());
   const Mat3 noise = R_imu_base * sigma_m.cwiseAbs2().asDiagonal() * R_imu_base.transpose();
   const Vec3 innovation = R_imu_base * (*way_base - T_begin_end.translation);
-  const Mat3 S = H * state_.P * H.transpose() + motion.covariance().bottomRightCorner<3, 3>() + noise;
+  const Mat3 S = H * before.P * H.transpose() + motion.covariance().bottomRightCorner<3, 3>() + noise;
   const auto factor = S.ldlt();
   prediction.slipped = innovation.dot(factor.solve(innovation)) > kSlip;
   if (prediction.slipped) return;
   const Mat18 F = transition(motion, R_before, R_after);
   const Eigen::Matrix<double, kStates, 3> cross =
-      F * state_.P * H.transpose() + noise_input(motion, R_before) * motion.covariance().rightCols<3>();
+      F * before.P * H.transpose() + noise_input(motion, R_before) * motion.covariance().rightCols<3>();
   const Eigen::Matrix<double, kStates, 3> K = factor.solve(cross.transpose()).transpose();
   const Vec18 change = K * innovation;
   state.P -= K * S * K.transpose();
@@ -175,14 +173,23 @@ void ImuPrior::measure_way(const ImuPreintegration& motion, Prediction& predicti
 }
 
 MotionPath ImuPrior::path(Time begin, Time end) const {
-  if (std::optional<Prediction> prediction = predict(begin, end)) return prediction->path;
+  if (std::optional<Prediction> prediction = predict(state_, begin, end)) return prediction->path;
   return without_imu_.path(begin, end);
 }
 
 Mat6 ImuPrior::covariance(Time end) const {
   const auto& last = fixes().last();
-  const std::optional<Prediction> prediction = last ? predict(last->stamp, end) : std::nullopt;
+  const std::optional<Prediction> prediction = last ? predict(state_, last->stamp, end) : std::nullopt;
   if (!prediction) return without_imu_.covariance(end);
+  return moved_covariance(prediction->state.P.topLeftCorner<6, 6>(), sheet_.T_base_imu.inverse());
+}
+
+Mat6 ImuPrior::step_covariance(Time end) const {
+  State exact = state_;
+  exact.P = of_exact_pose(state_.P);
+  const auto& last = fixes().last();
+  const std::optional<Prediction> prediction = last ? predict(exact, last->stamp, end) : std::nullopt;
+  if (!prediction) return without_imu_.step_covariance(end);
   return moved_covariance(prediction->state.P.topLeftCorner<6, 6>(), sheet_.T_base_imu.inverse());
 }
 
@@ -200,9 +207,10 @@ void ImuPrior::restart(const OdometryFix& fix, double dt_s) {
   state_.P.bottomRightCorner<3, 3>() = gravity;
 }
 
-// Quiet, not known to move, and feeling what it felt at the start, at rest: at constant speed an IMU is as quiet, and a
+// Quiet, not known to move (of a LiDAR that is blind nothing is, at the start), and feeling what it felt at the start, at rest: at constant speed an IMU is as quiet, and a
 // robot that sets off gently feels hardly more, but steadily.
 bool ImuPrior::stands(Time from, Time to) {
+  constexpr double kKnown_mps = 0.1, kSigmas = 9;  // three sigma
   constexpr double kSpeed_mps = 0.05, kForce_mps2 = 0.02, kRate_radps = 0.005;
   if (!rest_) return false;
   Vec3 gyro = Vec3::Zero(), accel = Vec3::Zero();
@@ -213,7 +221,12 @@ bool ImuPrior::stands(Time from, Time to) {
     accel += sample.accel_mps2;
     ++count;
   }
-  if (count < 3 || state_.v_odom.norm() > kSpeed_mps) return false;
+  if (count < 3) return false;
+  const Mat3 speed_covariance = state_.P.block<3, 3>(6, 6);
+  const bool known = speed_covariance.trace() < square(kKnown_mps);
+  speed_was_known_ = speed_was_known_ || known;
+  const bool may_be_none = !speed_was_known_ && state_.v_odom.dot(speed_covariance.ldlt().solve(state_.v_odom)) < kSigmas;
+  if (state_.v_odom.norm() > kSpeed_mps && !may_be_none) return false;
   gyro /= count, accel /= count;
   // Three sigma of the mean of three axes.
   const double noise = 3 * std::sqrt(3 * sheet_.rate_hz / count) / config_.imu_noise_factor;
@@ -239,22 +252,37 @@ void ImuPrior::stand_still() {
   state_.add_to_rest(change);
 }
 
+// No slip lasts for ever: then it is the velocity that is wrong, and the wheels are right.
+void ImuPrior::note_slip(const OdometryFix& fix) {
+  constexpr double kLongest_s = 20;
+  ++slips_;
+  if (seconds_between(*slipping_since_, fix.stamp) < kLongest_s) return;
+  state_.P.middleRows<3>(6).setZero();
+  state_.P.middleCols<3>(6).setZero();
+  state_.P.diagonal().segment<3>(6).setConstant(square(config_.max_speed_mps / 3));
+  slipping_since_.reset();
+}
+
 void ImuPrior::correct(const OdometryFix& fix) {
   const auto last = fixes().last();
   const std::optional<Prediction> predicted =
-      last && fix.stamp > last->stamp ? predict(last->stamp, fix.stamp) : std::nullopt;
+      last && fix.stamp > last->stamp ? predict(state_, last->stamp, fix.stamp) : std::nullopt;
+  constexpr double kRolled_m = 1e-3;  // what an encoder tells from nothing
+  const std::optional<double> rolled_m = last ? without_imu_.rolled_m(last->stamp, fix.stamp) : std::nullopt;
+  const bool rolls = rolled_m && std::abs(*rolled_m) > kRolled_m;
   without_imu_.correct(fix);
   const SE3 T_odom_imu = fix.T_odom_base * sheet_.T_base_imu;
   if (predicted) {
     const Vec6 shift = (predicted->state.T_odom_imu.inverse() * T_odom_imu).log();
     state_ = predicted->state;
     state_.add_to_rest(condition_on_pose(state_.P, shift, moved_covariance(fix.covariance, sheet_.T_base_imu)));
-    if (predicted->slipped) ++slips_;
+    slipping_since_ = predicted->slipped ? std::optional(slipping_since_.value_or(last->stamp)) : std::nullopt;
+    if (predicted->slipped) note_slip(fix);
   }
   state_.T_odom_imu = T_odom_imu;
   if (last && fix.stamp > last->stamp && !predicted) restart(fix, seconds_between(last->stamp, fix.stamp));
   if (last && !(state_.v_odom.norm() < config_.max_speed_mps)) restart(fix, 1);
-  if (last && stands(last->stamp, fix.stamp)) stand_still();
+  if (last && !rolls && stands(last->stamp, fix.stamp)) stand_still();
   imu_.forget_before(fix.stamp);
 }
 

@@ -19,6 +19,7 @@ class ImuPrior : public MotionPrior {
   void add(const WheelSample& sample) override { without_imu_.add(sample); }
   MotionPath path(Time begin, Time end) const override;
   Mat6 covariance(Time end) const override;
+  Mat6 step_covariance(Time end) const override;
   void correct(const OdometryFix& fix) override;
   int64_t slips() const override { return slips_; }
   const ImuBias& bias() const { return state_.bias; }
@@ -48,8 +49,9 @@ class ImuPrior : public MotionPrior {
     bool slipped = false;  // the wheels, by five sigma: not believed
   };
   /// From `begin`, the stamp of the state. Nothing if samples of the IMU are missing.
-  std::optional<Prediction> predict(Time begin, Time end) const;
-  void measure_way(const ImuPreintegration& motion, Prediction& prediction) const;
+  std::optional<Prediction> predict(const State& before, Time begin, Time end) const;
+  void measure_way(const State& before, const ImuPreintegration& motion, Prediction& prediction) const;
+  void note_slip(const OdometryFix& fix);
   void restart(const OdometryFix& fix, double dt_s);
   bool stands(Time from, Time to);
   void stand_still();
@@ -61,9 +63,11 @@ class ImuPrior : public MotionPrior {
   State state_;  // at the last fix
   bool feels_force_ = true;  // else the gyroscope alone tells, and velocity goes on
   int64_t slips_ = 0;
+  std::optional<Time> slipping_since_;
   ImuBias start_bias_;
   double gyro_bias_sigma_radps_ = 0.01;
   std::optional<ImuBias> rest_;  // what the IMU gives at rest, if it began so
+  bool speed_was_known_ = false;
   int rest_scans_ = 0;           // that it is the mean of
 };
 

@@ -28,6 +28,7 @@ void ImuTrack::add(const ImuSample& sample) {
   if (!samples_.empty() && sample.stamp <= samples_.back().stamp) return;
   if (doubted_) samples_.back() = *doubted_;
   doubted_.reset();
+  if (!samples_.empty()) usual_gap_.add(seconds_between(samples_.back().stamp, sample.stamp));
   samples_.push_back(sample);
   if (samples_.size() >= 3) remove_spike(samples_.size() - 2);
   doubt_newest();
@@ -40,7 +41,7 @@ void ImuTrack::doubt_newest() {
   const ImuSample& before = samples_[samples_.size() - 2];
   const bool far = (newest.gyro_radps - before.gyro_radps).norm() > limits_.spike_gyro_radps ||
                    (newest.accel_mps2 - before.accel_mps2).norm() > limits_.spike_accel_mps2;
-  if (!far || seconds_between(before.stamp, newest.stamp) > limits_.max_gap_s) return;
+  if (!far || seconds_between(before.stamp, newest.stamp) > max_gap_s()) return;
   doubted_ = newest;
   newest.gyro_radps = before.gyro_radps;
   newest.accel_mps2 = before.accel_mps2;
@@ -49,7 +50,7 @@ void ImuTrack::doubt_newest() {
 void ImuTrack::remove_spike(size_t middle) {
   const ImuSample& before = samples_[middle - 1];
   const ImuSample& after = samples_[middle + 1];
-  if (seconds_between(before.stamp, after.stamp) > 2.0 * limits_.max_gap_s) return;
+  if (seconds_between(before.stamp, after.stamp) > 2.0 * max_gap_s()) return;
   replace_spike(before.gyro_radps, samples_[middle].gyro_radps, after.gyro_radps, limits_.spike_gyro_radps);
   replace_spike(before.accel_mps2, samples_[middle].accel_mps2, after.accel_mps2, limits_.spike_accel_mps2);
 }
@@ -64,13 +65,13 @@ std::optional<ImuSample> ImuTrack::at(Time stamp) const {
                                       [](const ImuSample& s, Time t) { return s.stamp < t; });
   if (after == samples_.begin() || after == samples_.end()) {
     const ImuSample& nearest = after == samples_.end() ? samples_.back() : samples_.front();
-    if (std::abs(seconds_between(nearest.stamp, stamp)) > 0.5 * limits_.max_gap_s) return std::nullopt;
+    if (std::abs(seconds_between(nearest.stamp, stamp)) > 0.5 * max_gap_s()) return std::nullopt;
     return ImuSample{stamp, nearest.gyro_radps, nearest.accel_mps2, std::nullopt};
   }
   const ImuSample& a = *(after - 1);
   const ImuSample& b = *after;
   const double gap_s = seconds_between(a.stamp, b.stamp);
-  if (gap_s > limits_.max_gap_s) return std::nullopt;
+  if (gap_s > max_gap_s()) return std::nullopt;
   const double u = seconds_between(a.stamp, stamp) / gap_s;
   return ImuSample{stamp, a.gyro_radps + u * (b.gyro_radps - a.gyro_radps),
                    a.accel_mps2 + u * (b.accel_mps2 - a.accel_mps2), std::nullopt};

@@ -1,12 +1,14 @@
 // The recent IMU samples in order of time, cleaned of what no IMU measures.
 #pragma once
 
+#include <algorithm>
 #include <deque>
 #include <optional>
 
 #include "core/samples.h"
 #include "core/se3.h"
 #include "slam/inertial/motion_prior.h"
+#include "slam/inertial/usual_gap.h"
 
 namespace vsslam {
 
@@ -34,6 +36,8 @@ class ImuTrack {
   /// Keeps the last sample at or before `stamp`.
   void forget_before(Time stamp);
 
+  /// Samples further apart are a dropout: as set, or three of a slow sensor's periods.
+  double max_gap_s() const { return std::max(limits_.max_gap_s, usual_gap_.longest_s()); }
   const std::deque<ImuSample>& samples() const { return samples_; }
   /// Linear between samples no further apart than the largest gap; the nearest sample up to half of that
   /// beyond the ends. Orientation is not filled.
@@ -44,6 +48,7 @@ class ImuTrack {
   void doubt_newest();
   ImuTrackLimits limits_;
   std::deque<ImuSample> samples_;
+  UsualGap usual_gap_;
   std::optional<ImuSample> doubted_;  ///< the newest sample as it came, if it does not stand so in samples_
 };
 

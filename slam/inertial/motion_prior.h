@@ -60,7 +60,7 @@ struct InertialConfig {
   double rest_accel_mps2 = 0.15;  ///< ... and of the accelerometer
   double spike_gyro_radps = 0.5;  ///< a single sample this far from its neighbours is replaced by the median
   double spike_accel_mps2 = 20.0;
-  double max_gap_s = 0.05;                 ///< samples further apart are a dropout
+  double max_gap_s = 0.12;                 ///< samples further apart are a dropout; nearer, a motion goes on between them
   double max_speed_mps = 30.0;             ///< beyond this a velocity estimate is discarded
   double max_turn_radps = 3.0;             ///< as fast as anything on the ground turns
   /// How a robot's velocity changes that nothing measures: a car brakes by 3 m/s^2, the Scout by 1.
@@ -94,6 +94,8 @@ class MotionPrior {
   virtual MotionPath path(Time begin, Time end) const = 0;
   /// Of T_odom_base at `end`: the last fix moved along path(last fix, end). Right perturbation [rotation; translation].
   virtual Mat6 covariance(Time end) const = 0;
+  /// The same of the motion since the last fix alone.
+  virtual Mat6 step_covariance(Time end) const = 0;
   /// Called once per scan, in order.
   virtual void correct(const OdometryFix& fix) = 0;
   /// The undistorted scan of the last fix.

@@ -13,6 +13,14 @@ inline Mat6 moved_covariance(const Mat6& covariance_a, const SE3& T_a_b) {
   return Ad_b_a * covariance_a * Ad_b_a.transpose();
 }
 
+/// That of a state whose first six errors, of a pose, are none: how the rest errs, and through it the motion from there on.
+template <int N>
+Eigen::Matrix<double, N, N> of_exact_pose(Eigen::Matrix<double, N, N> P) {
+  P.template topRows<6>().setZero();
+  P.template leftCols<6>().setZero();
+  return P;
+}
+
 /// A state of N errors, of which the first six are of a pose, has the covariance P. The pose turns out to be off by
 /// `shift` and to be known with `posterior`. What that tells of the rest: since the measurement depends on the pose
 /// alone, the rest given the pose stays as it was. With K = P_rp P_pp^-1:

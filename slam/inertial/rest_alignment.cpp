@@ -1,5 +1,6 @@
 #include "slam/inertial/rest_alignment.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace vsslam {
@@ -41,11 +42,12 @@ RestAlignment align_at_rest(const std::deque<ImuSample>& samples, const ImuCalib
   RestAlignment result;
   if (samples.empty()) return result;
   constexpr size_t kEnough = 5;
+  constexpr double kMostBias_radps = 0.1;  // a phone's, twice; or a slow turn
   constexpr double kLeast = 0.7, kMost = 1.3;  // of gravity: no robot drives with 7 m/s^2
   const Spread spread = spread_of(samples);
   result.at_rest = samples.size() >= kEnough && spread.gyro_sigma < config.rest_gyro_radps &&
                    spread.accel_sigma < config.rest_accel_mps2 &&
-                   spread.gyro_mean.norm() < 2.0 * config.rest_gyro_radps;
+                   spread.gyro_mean.norm() < kMostBias_radps;
   const Quat& q_base_imu = imu.T_base_imu.rotation;
   const double force = spread.accel_mean.norm() / imu.gravity_mps2;
   result.no_gravity = samples.size() >= kEnough && !(force > kLeast && force < kMost);
@@ -54,8 +56,10 @@ RestAlignment align_at_rest(const std::deque<ImuSample>& samples, const ImuCalib
   result.at_rest = result.at_rest && std::abs(force - 1) * imu.gravity_mps2 < 2.0 * config.rest_accel_mps2;
   if (result.at_rest) {
     result.gyro_bias_radps = spread.gyro_mean;
+    constexpr double kTurnShare = 0.1;  // it may be a turn after all, which the scans will tell
     const double sample_sigma = imu.gyro_noise_radps_rthz * std::sqrt(imu.rate_hz);
-    result.gyro_bias_sigma_radps = sample_sigma / std::sqrt(static_cast<double>(samples.size()));
+    result.gyro_bias_sigma_radps = std::max(sample_sigma / std::sqrt(static_cast<double>(samples.size())),
+                                            kTurnShare * spread.gyro_mean.norm());
     result.accel_bias_mps2 = spread.accel_mean - imu.gravity_mps2 * spread.accel_mean.normalized();
   }
   const auto& q_earth_imu = samples.front().q_earth_imu;

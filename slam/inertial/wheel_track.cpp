@@ -32,6 +32,7 @@ WheelSample WheelTurns::unwrapped(WheelSample sample) {
 void WheelTrack::add(const WheelSample& sample) {
   if (!std::isfinite(sample.left_rad) || !std::isfinite(sample.right_rad)) return;
   if (!samples_.empty() && sample.stamp <= samples_.back().stamp) return;
+  if (!samples_.empty()) usual_gap_.add(seconds_between(samples_.back().stamp, sample.stamp));
   samples_.push_back(turns_.unwrapped(sample));
 }
 
@@ -49,13 +50,13 @@ std::optional<WheelTravel> WheelTrack::at(Time stamp) const {
   auto after = std::lower_bound(samples_.begin() + 1, samples_.end(), stamp,
                                 [](const WheelSample& s, Time t) { return s.stamp < t; });
   if (after == samples_.end()) {
-    if (seconds_between(samples_.back().stamp, stamp) > 0.5 * max_gap_s_) return std::nullopt;
+    if (seconds_between(samples_.back().stamp, stamp) > 0.5 * max_gap_s()) return std::nullopt;
     --after;
   }
   const WheelSample& a = *(after - 1);
   const WheelSample& b = *after;
   const double gap_s = seconds_between(a.stamp, b.stamp);
-  if (gap_s > max_gap_s_) return std::nullopt;
+  if (gap_s > max_gap_s()) return std::nullopt;
   const double u = seconds_between(a.stamp, stamp) / gap_s;
   return travel(a.left_rad + u * (b.left_rad - a.left_rad), a.right_rad + u * (b.right_rad - a.right_rad));
 }

@@ -6,6 +6,7 @@
 
 #include "core/calibration.h"
 #include "core/samples.h"
+#include "slam/inertial/usual_gap.h"
 
 namespace vsslam {
 
@@ -40,10 +41,12 @@ class WheelTrack {
   std::optional<WheelTravel> at(Time stamp) const;
 
  private:
+  double max_gap_s() const { return std::max(max_gap_s_, usual_gap_.longest_s()); }
   WheelTravel travel(double left_rad, double right_rad) const;
   WheelCalibration wheels_;
   double max_gap_s_;
   std::deque<WheelSample> samples_;
+  UsualGap usual_gap_;
   WheelTurns turns_;
 };
 

@@ -85,21 +85,28 @@ MotionPath VioPrior::path(Time begin, Time end) const {
   return fallback_.path(begin, end);
 }
 
+std::optional<MotionPath> VioPrior::visual_path_since_fix(Time end) const {
+  const std::optional<OdometryFix>& last = fallback_.fixes().last();
+  return last && last->stamp < end ? visual_path(last->stamp, end) : std::nullopt;
+}
+
+Mat6 VioPrior::covariance(Time end) const {
+  const std::optional<MotionPath> visual = visual_path_since_fix(end);
+  if (!visual) return fallback_.covariance(end);
+  return moved_covariance(fallback_.fixes().last()->covariance, visual->end_pose()) + step_covariance(end);
+}
+
 // While it tracks, visual odometry errs by a share of the way and of the turn (docs/benchmarks.md: 0.2 to 0.3 % over a
 // drive; from scan to scan it is the noise of its window).
-Mat6 VioPrior::covariance(Time end) const {
+Mat6 VioPrior::step_covariance(Time end) const {
   constexpr double kWayShare = 0.01, kTurnShare = 0.01, kStep_m = 2e-3, kStep_rad = 5e-4;
-  const std::optional<OdometryFix>& last = fallback_.fixes().last();
-  const std::optional<MotionPath> visual =
-      last && last->stamp < end ? visual_path(last->stamp, end) : std::nullopt;
-  if (!visual) return fallback_.covariance(end);
-  const SE3& motion = visual->end_pose();
-  const double step_m = kWayShare * motion.translation.norm() + kStep_m;
-  const double turn_rad = kTurnShare * motion.angle() + kStep_rad;
-  Mat6 covariance = moved_covariance(last->covariance, motion);
-  covariance.diagonal().head<3>().array() += turn_rad * turn_rad;
-  covariance.diagonal().tail<3>().array() += step_m * step_m;
-  return covariance;
+  const std::optional<MotionPath> visual = visual_path_since_fix(end);
+  if (!visual) return fallback_.step_covariance(end);
+  const double step_m = kWayShare * visual->end_pose().translation.norm() + kStep_m;
+  const double turn_rad = kTurnShare * visual->end_pose().angle() + kStep_rad;
+  Vec6 sigma;
+  sigma << Vec3::Constant(turn_rad), Vec3::Constant(step_m);
+  return sigma.cwiseAbs2().asDiagonal();
 }
 
 void VioPrior::correct(const OdometryFix& fix) {

@@ -20,12 +20,14 @@ class VioPrior : public MotionPrior {
   void add(const CameraFrame& image) override;
   MotionPath path(Time begin, Time end) const override;
   Mat6 covariance(Time end) const override;
+  Mat6 step_covariance(Time end) const override;
   void correct(const OdometryFix& fix) override;
   void add_scan(Time stamp, const Cloud& points_lidar, const SE3& T_odom_base) override;
   int64_t slips() const override { return fallback_.slips(); }
   std::optional<VisualReport> visual_report() const override;
 
  private:
+  std::optional<MotionPath> visual_path_since_fix(Time end) const;
   std::optional<MotionPath> visual_path(Time begin, Time end) const;
   std::optional<Quat> camera_turn(Time from, Time to) const;
   void fill_depth(Time stamp, VisualFrame& frame) const;  // by the clock of the IMU

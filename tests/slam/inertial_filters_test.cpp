@@ -155,6 +155,69 @@ TEST(ImuPrior, WheelsThatSpinAreNotBelieved) {
   EXPECT_EQ(prior.slips(), 5);
 }
 
+// Quiet, and so taken for rest: at a constant speed an IMU feels the same.
+TEST(ImuPrior, WheelsTellAConstantSpeedFromRest) {
+  const RigCalibration calibration = rig();
+  for (const double speed_mps : {0.04, 1.2}) {
+    const Motion straight = [&](double t) { return SE3(Quat::Identity(), {speed_mps * t, 0, 0}); };
+    ImuPrior prior({}, calibration, true);
+    prior.start({SE3(), Vec3::Zero(), 1e-3, true});
+    Wheels wheels(calibration);
+    for (int64_t t = 0; t <= 2000; t += 10) {
+      prior.add(imu_sample(straight, calibration, ms(t), {.gyro_bias_radps = 0}));
+      prior.add(wheels.advance(straight, ms(t)));
+      if (t % 100 == 0) prior.correct({.stamp = ms(t), .T_odom_base = straight(0.001 * static_cast<double>(t))});
+      if (t % 100 != 50 || t < 200) continue;
+      const double ahead_m = prior.path(ms(t - 50), ms(t)).end_pose().translation.x();
+      EXPECT_NEAR(ahead_m, 0.05 * speed_mps, 5e-4) << speed_mps << " m/s, " << t;
+    }
+    EXPECT_EQ(prior.slips(), 0);
+  }
+}
+
+// A velocity that was learnt wrong, from wheels that spun: after 20 s the wheels are believed again.
+TEST(ImuPrior, ASlipThatDoesNotEndIsAWrongVelocity) {
+  const RigCalibration calibration = rig();
+  ImuPrior prior({}, calibration, true);
+  prior.start({SE3(), Vec3::Zero(), 1e-3, true});
+  double x_m = 0, step_m = 0;
+  Wheels wheels(calibration);
+  for (int64_t t = 0; t <= 25000; t += 10) {
+    const Motion spun = [&](double s) { return SE3(Quat::Identity(), {s < 1 ? 3 * s : 3 + 1.2 * (s - 1), 0, 0}); };
+    prior.add(imu_sample(ahead, calibration, ms(t), {.gyro_bias_radps = 0}));
+    prior.add(wheels.advance(spun, ms(t)));
+    if (t % 100 != 0) continue;
+    if (t > 0) step_m = prior.path(ms(t - 100), ms(t)).end_pose().translation.x();
+    x_m += step_m;
+    const Mat6 blind = t == 0 ? Mat6(1e-6 * Mat6::Identity()) : prior.covariance(ms(t));
+    prior.correct({.stamp = ms(t), .T_odom_base = SE3(Quat::Identity(), {x_m, 0, 0}), .covariance = blind});
+    if (t == 5000) {
+      EXPECT_GT(step_m, 0.2);
+    }
+  }
+  EXPECT_NEAR(step_m, 0.12, 0.005);
+  EXPECT_GE(prior.slips(), 50);
+}
+
+// What the pose was known with does not count in the step from there, and what wheels tell of the past does not make it
+// less than it is.
+TEST(ImuPrior, KnowsAStepAsWellAsItIsMeasured) {
+  const RigCalibration calibration = rig();
+  ImuPrior prior({}, calibration, true);
+  prior.start({});
+  Wheels wheels(calibration);
+  const Mat6 vague = 0.01 * Mat6::Identity();
+  for (int64_t t = 0; t <= 1000; t += 10) {
+    prior.add(imu_sample(ahead, calibration, ms(t)));
+    prior.add(wheels.advance(ahead, ms(t)));
+    if (t % 100 == 0 && t <= 900) prior.correct({.stamp = ms(t), .T_odom_base = ahead(0.001 * static_cast<double>(t)), .covariance = vague});
+  }
+  const double step_m = std::sqrt(prior.step_covariance(ms(1000))(3, 3));
+  EXPECT_LT(step_m, way_sigma_m({}, 0.12, 0).x());
+  EXPECT_GT(step_m, 2e-4);
+  EXPECT_GT(std::sqrt(prior.covariance(ms(1000))(3, 3)), step_m);
+}
+
 TEST(ImuPrior, GoesByGyroscopeAndWheelsWhereTheForceIsNone) {
   const RigCalibration calibration = rig();
   const Motion circle = [](double t) {

@@ -173,6 +173,19 @@ TEST(WheelTrack, TurnsByTheEffectiveTrack) {
   EXPECT_FALSE(track.at(ms(80)).has_value());
 }
 
+TEST(ImuTrack, ASlowSensorIsNoDropout) {
+  ImuTrack imu({.max_gap_s = 0.05});
+  WheelTrack wheels({}, 0.05);
+  for (int64_t t = 0; t <= 2000; t += 70) {
+    imu.add({ms(t), Vec3(0, 0, 0.001 * static_cast<double>(t)), Vec3::Zero(), std::nullopt});
+    wheels.add({ms(t), 0.001 * static_cast<double>(t), 0.001 * static_cast<double>(t)});
+  }
+  ASSERT_TRUE(imu.at(ms(1000)) && wheels.at(ms(1000)));
+  EXPECT_NEAR(imu.at(ms(1000))->gyro_radps.z(), 1, 1e-9);
+  imu.add({ms(2400), Vec3::Zero(), Vec3::Zero(), std::nullopt});
+  EXPECT_FALSE(imu.at(ms(2200)).has_value());
+}
+
 TEST(WheelTrack, GoesOnWhereAnglesWrap) {
   WheelCalibration wheels;
   WheelTrack whole(wheels, 0.05), wrapped(wheels, 0.05);

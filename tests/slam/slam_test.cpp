@@ -126,6 +126,17 @@ TEST(SlamSurvives, SpikesAndNonsenseFromTheImu) {
   expect_recovers(options);
 }
 // Whatever the IMU says that cannot be, the result is hardly worse than that of the LiDAR alone.
+// An IMU is as quiet at a constant speed as at rest.
+TEST(Slam, StartsInSteadyMotion) {
+  DriveOptions options;
+  options.duration_s = 5;
+  const Motion straight = [](double t) { return SE3::from_rpy({0, 0, 0.3}, {-4 + 0.8 * t, -2 + 0.25 * t, 0.2}); };
+  for (const PriorKind prior : {PriorKind::imu, PriorKind::wheel_imu}) {
+    options.config.prior = prior;
+    EXPECT_LT(drive(room(), straight, options).position_rmse_m, 0.01);
+  }
+}
+
 TEST(Slam, APriorThatContradictsIsNotBelieved) {
   DriveOptions options;
   options.duration_s = 8;
