@@ -80,7 +80,8 @@ Mat6 DeadReckoning::covariance(Time end, const Mat6& last_pose, Mat6 covariance)
   const double turn_rad = config_.wheel_turn_slip * T_last_end.angle() + 0.01 * seconds_between(last->stamp, end);
   covariance(2, 2) = known(2, 2) + turn_rad * turn_rad;
   covariance.bottomRightCorner<3, 3>() = known.bottomRightCorner<3, 3>();
-  covariance.diagonal().tail<3>() += way_sigma_m(config_, T_last_end.translation.norm(), T_last_end.angle()).cwiseAbs2();
+  const Vec3 sigma_m = way_sigma_m(config_, T_last_end.translation.norm(), T_last_end.angle());
+  covariance.diagonal().tail<3>() += sigma_m.cwiseAbs2();
   covariance.topRightCorner<3, 3>().setZero();
   covariance.bottomLeftCorner<3, 3>().setZero();
   return covariance;

@@ -207,8 +207,8 @@ void ImuPrior::restart(const OdometryFix& fix, double dt_s) {
   state_.P.bottomRightCorner<3, 3>() = gravity;
 }
 
-// Quiet, not known to move (of a LiDAR that is blind nothing is, at the start), and feeling what it felt at the start, at rest: at constant speed an IMU is as quiet, and a
-// robot that sets off gently feels hardly more, but steadily.
+// Quiet, not known to move (before a speed was ever known: not known to be moving), and feeling what it felt at the start:
+// at constant speed an IMU is as quiet, and a robot that sets off gently feels hardly more, but steadily.
 bool ImuPrior::stands(Time from, Time to) {
   constexpr double kKnown_mps = 0.1, kSigmas = 9;  // three sigma
   constexpr double kSpeed_mps = 0.05, kForce_mps2 = 0.02, kRate_radps = 0.005;
