@@ -132,13 +132,14 @@ std::optional<ImuPrior::Prediction> ImuPrior::predict(const State& before, Time 
   const Mat3 R = q.toRotationMatrix();
   const Mat18 F = transition(motion, R, state.T_odom_imu.matrix3());
   state.P = F * before.P * F.transpose() + motion_noise(motion, R, sheet_);
-  measure_way(before, motion, prediction);
+  measure_way(before, motion, F, prediction);
   return prediction;
 }
 
 // The way of the wheels measures p = R_i' (p_j - p_i), which is off by H e_i + w_p: by the state before the motion and by
 // the noise of its preintegration. The state after it is off by e_j = F e_i + G w. So cov(e_j, p) = F P_i H' + G cov(w, w_p).
-void ImuPrior::measure_way(const State& before, const ImuPreintegration& motion, Prediction& prediction) const {
+void ImuPrior::measure_way(const State& before, const ImuPreintegration& motion, const Mat18& F,
+                           Prediction& prediction) const {
   constexpr double kSlip = 25;  // five sigma
   const std::optional<Vec3> way_base = without_imu_.way(prediction.path);
   if (!way_base) return;
@@ -146,7 +147,7 @@ void ImuPrior::measure_way(const State& before, const ImuPreintegration& motion,
   const SE3 T_begin_end = prediction.path.end_pose();
   const Mat3 R_imu_base = sheet_.T_base_imu.matrix3().transpose();
   const double dt = motion.dt_s();
-  const Mat3 R_before = before.T_odom_imu.matrix3(), R_after = state.T_odom_imu.matrix3();
+  const Mat3 R_before = before.T_odom_imu.matrix3();
   const Mat3 R_i_odom = R_before.transpose();
   Eigen::Matrix<double, 3, kStates> H = Eigen::Matrix<double, 3, kStates>::Zero();
   H.middleCols<3>(0) = hat(R_i_odom * (before.v_odom * dt + 0.5 * dt * dt * before.gravity_odom));
@@ -160,7 +161,6 @@ void ImuPrior::measure_way(const State& before, const ImuPreintegration& motion,
   const auto factor = S.ldlt();
   prediction.slipped = innovation.dot(factor.solve(innovation)) > kSlip;
   if (prediction.slipped) return;
-  const Mat18 F = transition(motion, R_before, R_after);
   const Eigen::Matrix<double, kStates, 3> cross =
       F * before.P * H.transpose() + noise_input(motion, R_before) * motion.covariance().rightCols<3>();
   const Eigen::Matrix<double, kStates, 3> K = factor.solve(cross.transpose()).transpose();

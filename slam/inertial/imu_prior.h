@@ -50,7 +50,8 @@ class ImuPrior : public MotionPrior {
   };
   /// From `begin`, the stamp of the state. Nothing if samples of the IMU are missing.
   std::optional<Prediction> predict(const State& before, Time begin, Time end) const;
-  void measure_way(const State& before, const ImuPreintegration& motion, Prediction& prediction) const;
+  /// F: the transition of the whole motion.
+  void measure_way(const State& before, const ImuPreintegration& motion, const Mat18& F, Prediction& prediction) const;
   void note_slip(const OdometryFix& fix);
   void restart(const OdometryFix& fix, double dt_s);
   bool stands(Time from, Time to);
