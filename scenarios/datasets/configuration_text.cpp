@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scenarios/datasets/dataset_facts.h"
+
 namespace vsslam {
 
 std::string real_text(double value) {
@@ -45,6 +47,11 @@ std::string vector_text(const Vec3& v) {
 
 double per_sample(double density, double rate_hz) {
   return density * std::sqrt(rate_hz);
+}
+
+double leaf_size_m(const DatasetFacts& facts) {
+  constexpr double kIndoors_m = 0.2;
+  return facts.scenario.slam.odometry.voxel_m.value_or(kIndoors_m);
 }
 
 }  // namespace vsslam

@@ -7,6 +7,8 @@
 
 namespace vsslam {
 
+struct DatasetFacts;
+
 /// With a point, always: Python's YAML takes 1e-05 for a text, OpenCV's 1 for a whole number.
 std::string real_text(double value);
 /// "r00, r01, r02,\n<indent>r10, ..." row by row.
@@ -18,5 +20,7 @@ std::string kalibr_rows(const SE3& T, const std::string& indent);
 std::string vector_text(const Vec3& v);  ///< "x, y, z"
 /// Noise of one sample from a continuous-time density, and back for random walks: density * sqrt(rate).
 double per_sample(double density, double rate_hz);
+/// Thinning of clouds: as the scenario sets `slam.odometry.voxel_m`, else for indoors.
+double leaf_size_m(const DatasetFacts& facts);
 
 }  // namespace vsslam

@@ -29,8 +29,7 @@ std::string loam_sensor_settings(const DatasetFacts& facts, ExtrinsicRpy rpy) {
 }
 
 std::string loam_mapping_settings(const DatasetFacts& facts) {
-  constexpr double kIndoors_m = 0.2;
-  const double leaf_m = facts.scenario.slam.odometry.voxel_m.value_or(kIndoors_m);
+  const double leaf_m = leaf_size_m(facts);
   return "  edgeThreshold: 1.0\n  surfThreshold: 0.1\n  edgeFeatureMinValidNum: 10\n  "
          "surfFeatureMinValidNum: 100\n\n"
          "  # Filter sizes in m: 0.2, 0.1, 0.2 indoors, 0.4, 0.2, 0.4 outdoors.\n" +

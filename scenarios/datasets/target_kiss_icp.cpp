@@ -10,8 +10,7 @@ namespace {
 
 // Left to itself it takes a hundredth of the range, 1 m for a VLP-16: too coarse for a corridor 2.4 m wide.
 double voxel_size_m(const DatasetFacts& facts) {
-  constexpr double kIndoors_m = 0.2;
-  return 2.5 * facts.scenario.slam.odometry.voxel_m.value_or(kIndoors_m);
+  return 2.5 * leaf_size_m(facts);
 }
 
 std::vector<ExtraFile> configuration(const DatasetFacts& facts) {
