@@ -25,8 +25,8 @@ struct PlaneMapConfig {
   int levels = 7;       ///< each level halves the edge
   int min_points = 10;  ///< of a plane
   int min_lines = 3;    ///< a ring that runs over a corner makes a plane that is not there; three do not
-  /// RMS distance of the points from their plane. Automatic: 2.15 times the noise of ranges, which leaves room for
-  /// poses and lasers that err by as much again.
+  /// RMS distance of the points from their plane. Automatic: the noise of ranges, as far as so many points can tell, and
+  /// three times plane_sigma_m.
   std::optional<double> max_thickness_m;
   /// What a plane errs by beside the noise of its points: lasers that are biased, surfaces that are not flat, poses that
   /// bent the map. Over the plane's extent it is also a tilt.
