@@ -31,7 +31,10 @@ Metrics::Degeneracy score_degeneracy_of(const MappingRun& estimation) {
   std::vector<DegeneracyReport> reports;
   for (const ScanReport& report : estimation.reports())
     reports.push_back({report.information, report.degenerate_directions});
-  const DegeneracyScore score = score_degeneracy(reports, estimation.degeneracy_truth());
+  std::span<const DegeneracyTruth> truth = estimation.degeneracy_truth();
+  if (!reports.empty()) reports.erase(reports.begin());  // the first scan has no map to be blind against
+  if (!truth.empty()) truth = truth.subspan(1);
+  const DegeneracyScore score = score_degeneracy(reports, truth);
   return {score.precision, score.recall, score.direction_error_deg_median};
 }
 

@@ -4,6 +4,8 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -66,6 +68,8 @@ struct Odometry::Impl {
   StepCovariance step;                        // since the last key scan
   std::optional<LidarScan> first_scan;        // until it is known how the robot moved then
   bool lost = false;                          // at the last scan
+  bool imu_refused = false;
+  int64_t imu_samples = 0, wheel_samples = 0, images = 0;
   OdometryHealth health;
 
   Impl(const SlamConfig& slam_config, const RigCalibration& rig_calibration, StageClock* stage_clock)
@@ -89,6 +93,8 @@ struct Odometry::Impl {
   MotionPath believed_path(Time begin, Time end) const;
   Prediction predict(const LidarScan& scan, const MotionPath& path, const Mat6& covariance, const Mat6& step) const;
   Prediction predict(const LidarScan& scan);
+  Mat6 known_step(const Prediction& prediction, const SE3& T_last_now) const;
+  void note_step(const Mat6& covariance);
   std::optional<LidarScan> with_rings(const LidarScan& scan);
   ScanView view(const LidarScan& scan, const MotionPath& motion);
   Registration align(const ScanView& view, const Prediction& prediction);
@@ -98,6 +104,7 @@ struct Odometry::Impl {
   void judge_prior(const LidarScan& scan, const SE3& T_odom_base, const Mat6& known,
                    const Registration& registration);
   void restart_prior();
+  void warn_of_missing(OdometryHealth& said) const;
   void note_lost(Time stamp, const Registration& registration);
   void correct_prior(Time stamp, const SE3& T_odom_base, const Mat6& covariance, const Registration& registration);
   std::vector<Feature> features(const char* stage, const Cloud& points_lidar, std::optional<RingOrder>& order,
@@ -125,13 +132,15 @@ OdometryScan Odometry::Impl::add(const LidarScan& scan) {
   if (lidar.has_map()) lidar.fit_voxel(registration.correspondences);
   // 5 what the LiDAR has seen tells what the prior is worth, and corrects its biases and velocity
   if (!registration.used_prior_only) judge_prior(scan, T_odom_base, covariance, registration);
+  correct_prior(scan.stamp, T_odom_base, covariance, registration);
   if (last_odom_base) {
-    step.add_prediction(last_odom_base->pose.inverse() * prediction.T_odom_base, prediction.step_covariance,
-                        seconds_between(last_odom_base->stamp, scan.stamp), seconds_between(scan.stamp, scan.end));
+    step.add_prediction(last_odom_base->pose.inverse() * prediction.T_odom_base,
+                        known_step(prediction, last_odom_base->pose.inverse() * T_odom_base),
+                        seconds_between(last_odom_base->stamp, scan.stamp), seconds_between(scan.stamp, scan.end),
+                        trust.believed() && prior->imu_noise().has_value());
     if (!registration.used_prior_only)
       step.add_registration((prediction.T_odom_base.inverse() * T_odom_base).log(), prediction.covariance, covariance);
   }
-  correct_prior(scan.stamp, T_odom_base, covariance, registration);
   prior->add_scan(scan.stamp, seen.points_lidar, T_odom_base);
 
   OdometryScan result;
@@ -154,12 +163,35 @@ OdometryScan Odometry::Impl::add(const LidarScan& scan) {
   // 6 far enough from the last key scan? then it enters the local map
   if (lidar.wants_key(T_odom_base)) {
     result.covariance_since_key = step.add_key(T_odom_base, own_covariance(registration, seen));
+    if (lidar.has_map()) note_step(result.covariance_since_key);
     make_key(seen, result);
   } else if (!lidar.has_map()) {  // the scans so far held no planes: this one may
     lidar.insert_key(features("features_of_key", seen.points_lidar, seen.order, lidar.map_voxel_m()),
                      T_odom_base, rig.lidar.T_base_lidar);
   }
   return result;
+}
+
+// Covariance of the motion since the last scan, once it is known that the robot stood: then it errs by what it was thought
+// to have moved.
+Mat6 Odometry::Impl::known_step(const Prediction& prediction, const SE3& T_last_now) const {
+  constexpr double kRest_m = 1e-4;
+  if (!trust.believed() || !prior->stood()) return prediction.step_covariance;
+  Mat6 step = Mat6::Zero();
+  step.topLeftCorner<3, 3>() = prediction.step_covariance.topLeftCorner<3, 3>();
+  step.bottomRightCorner<3, 3>() =
+      T_last_now.translation * T_last_now.translation.transpose() + kRest_m * kRest_m * Mat3::Identity();
+  return step;
+}
+
+// A step from key scan to key scan.
+void Odometry::Impl::note_step(const Mat6& covariance) {
+  constexpr double kUnsure_m = 0.1;  // of a step of about a meter: worse than any odometry that is of use
+  const Eigen::SelfAdjointEigenSolver<Mat3> translation(covariance.bottomRightCorner<3, 3>(), Eigen::EigenvaluesOnly);
+  const double sigma_m = std::sqrt(translation.eigenvalues()[2]);
+  ++health.steps;
+  if (!(sigma_m <= kUnsure_m)) ++health.steps_unsure;
+  health.worst_step_sigma_m = std::max(health.worst_step_sigma_m, sigma_m);
 }
 
 // Base at the origin, yaw 0, gravity along -z.
@@ -172,6 +204,7 @@ SE3 Odometry::Impl::start_pose() {
   const bool by_imu = by_force || config.prior == PriorKind::wheel_imu;
   if (by_imu && (rest.upside_down || (rest.no_gravity && by_force))) {
     trust.refuse();
+    imu_refused = true;
     health.warnings.push_back(fmt::format("prior: the IMU {}: not believed, the LiDAR alone goes on",
                                           rest.no_gravity ? "does not feel gravity" : "is upside down by its mount"));
   } else if (by_imu && rest.no_gravity) {
@@ -213,7 +246,10 @@ Odometry::Impl::Prediction Odometry::Impl::predict(const LidarScan& scan) {
 std::optional<LidarScan> Odometry::Impl::with_rings(const LidarScan& scan) {
   if (!scan.rings_known || rings_tell(scan.points)) return std::nullopt;
   LidarScan repaired = scan;
-  repaired.rings_known = ring_bands.fill(repaired.points);
+  {
+    const StageTimer timer(clock, "derive_rings");
+    repaired.rings_known = ring_bands.fill(repaired.points);
+  }
   if (health.scans_ringless++ == 0)
     health.repairs.push_back(
         repaired.rings_known
@@ -347,6 +383,20 @@ void Odometry::Impl::note_lost(Time stamp, const Registration& registration) {
   ++health.lost.back().scans;
 }
 
+// A prior whose sensors are not there is another prior.
+void Odometry::Impl::warn_of_missing(OdometryHealth& said) const {
+  const PriorKind kind = config.prior;
+  const auto missing = [&](bool needed, int64_t samples, const char* sensor, const char* instead) {
+    if (needed && samples == 0)
+      said.warnings.push_back(fmt::format("prior: slam.prior asks for {}, and there is none: {}", sensor, instead));
+  };
+  missing(kind == PriorKind::vio, images, "a camera", "IMU and wheels go on without it");
+  missing(kind == PriorKind::vio || kind == PriorKind::imu || kind == PriorKind::wheel_imu, imu_samples, "an IMU",
+          wheel_samples > 0 && kind != PriorKind::imu ? "the wheels go on without it" : "the last velocity goes on");
+  missing(kind == PriorKind::wheel || kind == PriorKind::wheel_imu, wheel_samples, "wheels",
+          imu_samples > 0 && kind != PriorKind::wheel ? "the IMU goes on without them" : "the last velocity goes on");
+}
+
 // What it had learnt came from samples in the wrong unit.
 void Odometry::Impl::restart_prior() {
   health.wheels_slipped += prior->slips();
@@ -420,15 +470,18 @@ Odometry::~Odometry() = default;
 
 void Odometry::add(const ImuSample& sample) {
   const ImuSample repaired = impl_->imu_units.repaired(sample);
+  ++impl_->imu_samples;
   if (impl_->imu_units.repairs()) ++impl_->health.imu_repaired;
   if (impl_->imu_units.newly_in_degrees()) impl_->restart_prior();
   if (!impl_->last_odom_base) impl_->imu_before_start.add(repaired);
   impl_->prior->add(repaired);
 }
 void Odometry::add(const WheelSample& sample) {
+  ++impl_->wheel_samples;
   impl_->prior->add(sample);
 }
 void Odometry::add(const CameraFrame& image) {
+  ++impl_->images;
   impl_->prior->add(image);
 }
 OdometryScan Odometry::add(const LidarScan& scan) {
@@ -441,10 +494,14 @@ OdometryHealth Odometry::health() const {
   health.range_sigma_m = impl_->lidar.range_sigma_m();
   health.voxel_m = impl_->lidar.voxel_m();
   health.wheels_slipped += impl_->prior->slips();
+  health.imu_noise = impl_->prior->imu_noise();
   constexpr int64_t kOften = 10;  // one scan in so many: a wheel or a floor that is not as the sheet says
-  if (health.wheels_slipped * kOften > health.scans)
-    health.warnings.push_back(fmt::format("wheels: {} of {} scans say other than the IMU how far it went: not believed there",
-                                          health.wheels_slipped, health.scans));
+  if (!impl_->imu_refused && health.wheels_slipped * kOften > health.scans)
+    health.warnings.push_back(
+        fmt::format("wheels: in {} of {} scans their way is not the IMU's, and was not believed: slip, or a wrong "
+                    "wheels.wheel_radius_m or imu.T_base_imu",
+                    health.wheels_slipped, health.scans));
+  impl_->warn_of_missing(health);
   const std::vector<std::string>& of_units = impl_->imu_units.repairs_said();
   health.repairs.insert(health.repairs.end(), of_units.begin(), of_units.end());
   return health;

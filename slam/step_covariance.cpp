@@ -1,6 +1,7 @@
 #include "slam/step_covariance.h"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -8,10 +9,12 @@
 
 namespace vsslam {
 
-void StepCovariance::add_prediction(const SE3& T_last_predicted, const Mat6& step, double dt_s, double scan_s) {
+void StepCovariance::add_prediction(const SE3& T_last_predicted, const Mat6& step, double dt_s, double scan_s,
+                                    bool measured) {
   missed_ = moved_covariance(missed_, T_last_predicted) + step;
   ++steps_;
   meanwhile_ = scan_s / dt_s * step;
+  measured_ = measured;
 }
 
 void StepCovariance::add_registration(const Vec6& shift, const Mat6& predicted, const Mat6& known) {
@@ -28,8 +31,10 @@ void StepCovariance::add_registration(const Vec6& shift, const Mat6& predicted, 
 // The pose of a scan is that of its stamp, its points were moved there by the prior: on average they err as the mean of a
 // random walk does, by a third of the variance at its end.
 Mat6 StepCovariance::bend() const {
+  const double least = measured_ ? 1 : 0;
   Vec6 factor;
-  factor << Vec3::Constant(std::sqrt(surprise_[0] / 3)), Vec3::Constant(std::sqrt(surprise_[1] / 3));
+  factor << Vec3::Constant(std::sqrt(std::max(least, surprise_[0]) / 3)),
+      Vec3::Constant(std::sqrt(std::max(least, surprise_[1]) / 3));
   return factor.asDiagonal() * meanwhile_ * factor.asDiagonal();
 }
 
@@ -37,7 +42,10 @@ Mat6 StepCovariance::add_key(const SE3& T_odom_base, const Mat6& known_by_scan) 
   const Mat6 known = known_by_scan + bend();
   const std::optional<Key> last = std::exchange(last_key_, Key{T_odom_base, known});
   // The error of a velocity lasts: n steps that err alike have n times the variance of n that err by themselves.
-  const Mat6 missed = std::exchange(steps_, 0) * std::exchange(missed_, Mat6::Zero());
+  const double n = std::exchange(steps_, 0);
+  Vec6 alike;
+  alike << Vec3::Constant(measured_ ? 1 : std::sqrt(n)), Vec3::Constant(std::sqrt(n));
+  const Mat6 missed = alike.asDiagonal() * std::exchange(missed_, Mat6::Zero()) * alike.asDiagonal();
   if (!last) return known;
   const Mat6 scans = moved_covariance(last->known, last->T_odom_base.inverse() * T_odom_base) + known;
   const Mat6 by_priors = missed.ldlt().solve(Mat6::Identity()), by_scans = scans.ldlt().solve(Mat6::Identity());

@@ -13,7 +13,9 @@ namespace vsslam {
 class StepCovariance {
  public:
   /// A scan that takes `scan_s` and was predicted `dt_s` after the last one, with the covariance `step` of T_last_predicted.
-  void add_prediction(const SE3& T_last_predicted, const Mat6& step, double dt_s, double scan_s);
+  /// `measured`: by an IMU whose noise is known, so that turns err as claimed and each anew; else by what is assumed of
+  /// how robots move.
+  void add_prediction(const SE3& T_last_predicted, const Mat6& step, double dt_s, double scan_s, bool measured);
   /// Where the scan was registered, against where it was predicted, and how well that was known.
   void add_registration(const Vec6& shift, const Mat6& predicted, const Mat6& known);
   /// A key scan, whose registration errs by `known` beside others against the same map. The covariance of its pose in the
@@ -30,6 +32,7 @@ class StepCovariance {
   Mat6 missed_ = Mat6::Zero();     // by the priors since then, at the last scan, as if each step erred by itself
   Mat6 meanwhile_ = Mat6::Zero();  // by the prior while the last scan was taken, as it claims
   double steps_ = 0;
+  bool measured_ = false;  // the last prediction
   double surprise_[2] = {1, 1};  // of rotation and translation, running means: 1 where the priors err as they claim
 };
 

@@ -138,16 +138,19 @@ class Diagnosis {
   void wheels() {
     const WheelsHealth& wheels = health_.wheels;
     const WheelCalibration& sheet = rig_.wheels;
-    if (wheels.travel_scale && !follows_prior() && off(*wheels.travel_scale, kTravelScale))
+    const bool radius_off = wheels.travel_scale && !follows_prior() && off(*wheels.travel_scale, kTravelScale);
+    if (radius_off)
       warn(
           "wheels: they travel {:.2f} times as far as the LiDAR: wheels.wheel_radius_m is {:.4g}, {:.4g} "
           "would fit",
           *wheels.travel_scale, sheet.wheel_radius_m, sheet.wheel_radius_m / *wheels.travel_scale);
-    if (wheels.yaw_scale && off(*wheels.yaw_scale, kYawScale))
+    if (!wheels.yaw_scale) return;
+    const double turn = *wheels.yaw_scale / (radius_off ? *wheels.travel_scale : 1);
+    if (off(turn, kYawScale))
       warn(
-          "wheels: they turn {:.2f} times as far as the LiDAR: wheels.effective_track_m is {:.4g}, {:.4g} "
+          "wheels: they turn {:.2f} times as far as the LiDAR{}: wheels.effective_track_m is {:.4g}, {:.4g} "
           "would fit",
-          *wheels.yaw_scale, sheet.effective_track_m, sheet.effective_track_m * *wheels.yaw_scale);
+          turn, radius_off ? ", with that radius" : "", sheet.effective_track_m, sheet.effective_track_m * turn);
   }
 
   void camera() {
@@ -166,6 +169,10 @@ class Diagnosis {
     if (follows_prior())
       warn("lidar: {} of {} scans saw one direction worse than 5 cm: along it the trajectory is the prior's",
            health_.odometry.scans_blind, health_.odometry.scans);
+    if (health_.odometry.steps_unsure > 0)
+      warn("odometry: {} of its {} steps from key scan to key scan are known no better than 10 cm, the worst to {:.2f} m: "
+           "the LiDAR saw too little there, and nothing else told",
+           health_.odometry.steps_unsure, health_.odometry.steps, health_.odometry.worst_step_sigma_m);
   }
 
   bool follows_prior() const { return share(health_.odometry.scans_blind, health_.odometry.scans) > kFollowedShare; }
@@ -180,6 +187,8 @@ class Diagnosis {
     else if (health_.blind_share() > kWorthlessShare)
       worthless("the LiDAR gave nothing in {} of {} scans: the trajectory is the prior's",
                 health_.odometry.scans_prior_only, health_.odometry.scans);
+    else if (share(health_.odometry.steps_unsure, health_.odometry.steps) > kWorthlessShare)
+      worthless("{} of {} steps of the odometry are guesses", health_.odometry.steps_unsure, health_.odometry.steps);
     else if (share(lost, health_.odometry.scans) > kWorthlessShare)
       worthless("the pose was lost in {} of {} scans", lost, health_.odometry.scans);
     else if (share(lidar.dropped_count(), all) > kWorthlessShare)

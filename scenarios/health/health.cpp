@@ -89,6 +89,11 @@ std::string Health::verdict() const {
   return fmt::format("{} warning{}", warnings.size(), warnings.size() == 1 ? "" : "s");
 }
 
+Json imu_noise_json(const std::optional<Eigen::Vector2d>& noise) {
+  if (!noise) return nullptr;
+  return {{"gyro_radps_rthz", noise->x()}, {"accel_mps2_rthz", noise->y()}};
+}
+
 Json health_json(const Health& health, Duration stamp_offset) {
   Json sensors = Json::object();
   if (health.imu.present()) sensors["imu"] = imu_json(health.imu);
@@ -98,8 +103,12 @@ Json health_json(const Health& health, Duration stamp_offset) {
   return {{"sensors", sensors},
           {"range_sigma_m", health.odometry.range_sigma_m},
           {"voxel_m", health.odometry.voxel_m},
+          {"imu_noise", imu_noise_json(health.odometry.imu_noise)},
           {"scans_prior_only", health.odometry.scans_prior_only},
           {"scans_blind", health.odometry.scans_blind},
+          {"steps", health.odometry.steps},
+          {"steps_unsure", health.odometry.steps_unsure},
+          {"worst_step_sigma_m", health.odometry.worst_step_sigma_m},
           {"scans_unconverged", health.odometry.scans_unconverged},
           {"prior_refused", health.odometry.prior_refused},
           {"wheels_slipped", health.odometry.wheels_slipped},

@@ -123,10 +123,13 @@ std::string lost(const json& spans) {
 }
 
 std::string scans_line(const StoredResult& result, const json& health) {
-  return fmt::format("<p class=\"note\">Scans: {}. The LiDAR gave nothing in {}; {} did not converge.</p>\n",
-                     or_dash(number(member(*result.metrics, "scans"), 0, "")),
-                     or_dash(number(member(health, "scans_prior_only"), 0, "")),
-                     or_dash(number(member(health, "scans_unconverged"), 0, "")));
+  const auto count = [&](const char* key) { return or_dash(number(member(health, key), 0, "")); };
+  return fmt::format(
+      "<p class=\"note\">Scans: {}. The LiDAR gave nothing in {}, saw one direction worse than 5 cm in {}; {} did not "
+      "converge; in {} the wheels' way was not the IMU's; in {} the prior was not believed. Steps known no better than 10 cm: "
+      "{} of {}.</p>\n",
+      or_dash(number(member(*result.metrics, "scans"), 0, "")), count("scans_prior_only"), count("scans_blind"),
+      count("scans_unconverged"), count("wheels_slipped"), count("prior_refused"), count("steps_unsure"), count("steps"));
 }
 
 std::string one_html(const StoredResult& result, bool named) {

@@ -10,12 +10,6 @@ namespace vsslam {
 
 namespace {
 
-ImuCalibration believed(ImuCalibration imu, double noise_factor) {
-  imu.gyro_noise_radps_rthz *= noise_factor;
-  imu.accel_noise_mps2_rthz *= noise_factor;
-  return imu;
-}
-
 double square(double x) {
   return x * x;
 }
@@ -52,11 +46,12 @@ Eigen::Matrix<double, ImuPrior::kStates, 9> ImuPrior::noise_input(const ImuPrein
   return G;
 }
 
-ImuPrior::Mat18 ImuPrior::motion_noise(const ImuPreintegration& motion, const Mat3& R_before, const ImuCalibration& imu) {
+ImuPrior::Mat18 ImuPrior::motion_noise(const ImuPreintegration& motion, const Mat3& R_before) const {
   const auto G = noise_input(motion, R_before);
   Mat18 Q = G * motion.covariance() * G.transpose();
-  Q.diagonal().segment<3>(9).array() += square(imu.gyro_bias_walk_radps2_rthz) * motion.dt_s();
-  Q.diagonal().segment<3>(12).array() += square(imu.accel_bias_walk_mps3_rthz) * motion.dt_s();
+  Q.diagonal().head<3>().array() += square(config_.gyro_scale_sigma * so3_log(motion.delta_R()).norm());
+  Q.diagonal().segment<3>(9).array() += square(sheet_.gyro_bias_walk_radps2_rthz) * motion.dt_s();
+  Q.diagonal().segment<3>(12).array() += square(sheet_.accel_bias_walk_mps3_rthz) * motion.dt_s();
   return Q;
 }
 
@@ -69,12 +64,15 @@ void ImuPrior::State::add_to_rest(const Vec18& change) {
 
 ImuPrior::ImuPrior(const InertialConfig& config, const RigCalibration& rig, bool use_wheels)
     : config_(config),
-      sheet_(believed(rig.imu, config.imu_noise_factor)),
+      sheet_(rig.imu),
+      noise_(rig.imu, config.imu_noise_factor),
       imu_(track_limits(config)),
       without_imu_(config, rig, use_wheels) {}
 
 void ImuPrior::start(const InitialState& state) {
   constexpr double kMovingTilt_rad = 0.1;  // level by the mean specific force, while braking with 1 m/s^2
+  sheet_.gyro_noise_radps_rthz = noise_.gyro_radps_rthz();
+  sheet_.accel_noise_mps2_rthz = noise_.accel_mps2_rthz();
   start_bias_ = {state.gyro_bias_radps, state.accel_bias_mps2};
   gyro_bias_sigma_radps_ = state.gyro_bias_sigma_radps;
   feels_force_ = state.feels_gravity;
@@ -131,7 +129,7 @@ std::optional<ImuPrior::Prediction> ImuPrior::predict(const State& before, Time 
   }
   const Mat3 R = q.toRotationMatrix();
   const Mat18 F = transition(motion, R, state.T_odom_imu.matrix3());
-  state.P = F * before.P * F.transpose() + motion_noise(motion, R, sheet_);
+  state.P = F * before.P * F.transpose() + motion_noise(motion, R);
   measure_way(before, motion, F, prediction);
   return prediction;
 }
@@ -164,9 +162,14 @@ void ImuPrior::measure_way(const State& before, const ImuPreintegration& motion,
   const Eigen::Matrix<double, kStates, 3> cross =
       F * before.P * H.transpose() + noise_input(motion, R_before) * motion.covariance().rightCols<3>();
   const Eigen::Matrix<double, kStates, 3> K = factor.solve(cross.transpose()).transpose();
-  const Vec18 change = K * innovation;
+  Vec18 change = K * innovation;
   state.P -= K * S * K.transpose();
   state.P = 0.5 * (state.P + state.P.transpose()).eval();
+  // What it tells of where the motion began is no motion. That pose stays, and so errs by what it is not moved by.
+  const Vec6 start = before.P.topRows<6>() * H.transpose() * factor.solve(innovation);
+  const Vec6 start_at_end = F.topLeftCorner<6, 6>() * start;
+  change.head<6>() -= start_at_end;
+  state.P.topLeftCorner<6, 6>() += start_at_end * start_at_end.transpose();
   state.T_odom_imu = state.T_odom_imu * SE3::exp(change.head<6>());
   state.add_to_rest(change);
   prediction.path = prediction.path.bent(sheet_.T_base_imu.adjoint() * change.head<6>());
@@ -229,7 +232,7 @@ bool ImuPrior::stands(Time from, Time to) {
   if (state_.v_odom.norm() > kSpeed_mps && !may_be_none) return false;
   gyro /= count, accel /= count;
   // Three sigma of the mean of three axes.
-  const double noise = 3 * std::sqrt(3 * sheet_.rate_hz / count) / config_.imu_noise_factor;
+  const double noise = 3 * std::sqrt(3 * sheet_.rate_hz / count);
   if ((gyro - rest_->gyro_radps).norm() > kRate_radps + noise * sheet_.gyro_noise_radps_rthz ||
       (accel - rest_->accel_mps2).norm() > kForce_mps2 + noise * sheet_.accel_noise_mps2_rthz)
     return false;
@@ -239,28 +242,43 @@ bool ImuPrior::stands(Time from, Time to) {
   return true;
 }
 
-// Velocity zero, as measured. The pose is the registration's and stays (a Schmidt update).
+// Velocity zero, as measured, and so the way since the last fix. The pose is the registration's and stays: it errs by what
+// it is not moved by.
 void ImuPrior::stand_still() {
   constexpr double kSigma_mps = 2e-3;
   const Mat3 S = state_.P.block<3, 3>(6, 6) + kSigma_mps * kSigma_mps * Mat3::Identity();
-  Eigen::Matrix<double, kStates, 3> K = S.ldlt().solve(state_.P.middleRows<3>(6)).transpose();
-  K.topRows<6>().setZero();
+  const Eigen::Matrix<double, kStates, 3> K = S.ldlt().solve(state_.P.middleRows<3>(6)).transpose();
   const Vec18 change = -K * state_.v_odom;
   Mat18 rest = Mat18::Identity();
   rest.middleCols<3>(6) -= K;
   state_.P = rest * state_.P * rest.transpose() + kSigma_mps * kSigma_mps * K * K.transpose();
+  state_.P.topLeftCorner<6, 6>() += change.head<6>() * change.head<6>().transpose();
   state_.add_to_rest(change);
 }
 
-// No slip lasts for ever: then it is the velocity that is wrong, and the wheels are right.
-void ImuPrior::note_slip(const OdometryFix& fix) {
-  constexpr double kLongest_s = 20;
+// No slip lasts for ever: then it is the velocity that is wrong, and the wheels are right. A wrong velocity that grows
+// uncertain lets the wheels in for a scan, which is no end of the slip.
+void ImuPrior::note_slip(bool slipped, Time since, Time now) {
+  constexpr double kLongest_s = 20, kOver_s = 1;
+  if (!slipped) {
+    if (slipping_since_ && seconds_between(last_slip_, now) > kOver_s) slipping_since_.reset();
+    return;
+  }
   ++slips_;
-  if (seconds_between(*slipping_since_, fix.stamp) < kLongest_s) return;
+  last_slip_ = now;
+  if (!slipping_since_) slipping_since_ = since;
+  if (seconds_between(*slipping_since_, now) < kLongest_s) return;
   state_.P.middleRows<3>(6).setZero();
   state_.P.middleCols<3>(6).setZero();
   state_.P.diagonal().segment<3>(6).setConstant(square(config_.max_speed_mps / 3));
   slipping_since_.reset();
+}
+
+// The accelerometer's stays as unknown as it is where it is worth nothing.
+void ImuPrior::measure_noise(Time from, Time to) {
+  noise_.listen(imu_.samples(), from, to);
+  sheet_.gyro_noise_radps_rthz = noise_.gyro_radps_rthz();
+  if (feels_force_) sheet_.accel_noise_mps2_rthz = noise_.accel_mps2_rthz();
 }
 
 void ImuPrior::correct(const OdometryFix& fix) {
@@ -276,13 +294,14 @@ void ImuPrior::correct(const OdometryFix& fix) {
     const Vec6 shift = (predicted->state.T_odom_imu.inverse() * T_odom_imu).log();
     state_ = predicted->state;
     state_.add_to_rest(condition_on_pose(state_.P, shift, moved_covariance(fix.covariance, sheet_.T_base_imu)));
-    slipping_since_ = predicted->slipped ? std::optional(slipping_since_.value_or(last->stamp)) : std::nullopt;
-    if (predicted->slipped) note_slip(fix);
+    note_slip(predicted->slipped, last->stamp, fix.stamp);
   }
   state_.T_odom_imu = T_odom_imu;
   if (last && fix.stamp > last->stamp && !predicted) restart(fix, seconds_between(last->stamp, fix.stamp));
   if (last && !(state_.v_odom.norm() < config_.max_speed_mps)) restart(fix, 1);
-  if (last && !rolls && stands(last->stamp, fix.stamp)) stand_still();
+  stood_ = last && !rolls && stands(last->stamp, fix.stamp);
+  if (stood_) stand_still();
+  if (last) measure_noise(last->stamp, fix.stamp);
   imu_.forget_before(fix.stamp);
 }
 

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "slam/inertial/dead_reckoning.h"
+#include "slam/inertial/imu_noise.h"
 #include "slam/inertial/imu_span.h"
 #include "slam/inertial/motion_prior.h"
 
@@ -22,6 +23,10 @@ class ImuPrior : public MotionPrior {
   Mat6 step_covariance(Time end) const override;
   void correct(const OdometryFix& fix) override;
   int64_t slips() const override { return slips_; }
+  bool stood() const override { return stood_; }
+  std::optional<Eigen::Vector2d> imu_noise() const override {
+    return Eigen::Vector2d(noise_.gyro_radps_rthz(), noise_.accel_mps2_rthz());
+  }
   const ImuBias& bias() const { return state_.bias; }
   const FixHistory& fixes() const { return without_imu_.fixes(); }
 
@@ -42,7 +47,8 @@ class ImuPrior : public MotionPrior {
   };
   static Mat18 transition(const ImuPreintegration& motion, const Mat3& R_before, const Mat3& R_after);
   static Eigen::Matrix<double, kStates, 9> noise_input(const ImuPreintegration& motion, const Mat3& R_before);
-  static Mat18 motion_noise(const ImuPreintegration& motion, const Mat3& R_before, const ImuCalibration& imu);
+  Mat18 motion_noise(const ImuPreintegration& motion, const Mat3& R_before) const;
+  void measure_noise(Time from, Time to);
   struct Prediction {
     State state;
     MotionPath path;
@@ -52,23 +58,26 @@ class ImuPrior : public MotionPrior {
   std::optional<Prediction> predict(const State& before, Time begin, Time end) const;
   /// F: the transition of the whole motion.
   void measure_way(const State& before, const ImuPreintegration& motion, const Mat18& F, Prediction& prediction) const;
-  void note_slip(const OdometryFix& fix);
+  void note_slip(bool slipped, Time since, Time now);
   void restart(const OdometryFix& fix, double dt_s);
   bool stands(Time from, Time to);
   void stand_still();
 
   InertialConfig config_;
   ImuCalibration sheet_;  // its noise as believed
+  ImuNoise noise_;
   ImuTrack imu_;
   DeadReckoning without_imu_;
   State state_;  // at the last fix
   bool feels_force_ = true;  // else the gyroscope alone tells, and velocity goes on
   int64_t slips_ = 0;
   std::optional<Time> slipping_since_;
+  Time last_slip_{};
   ImuBias start_bias_;
   double gyro_bias_sigma_radps_ = 0.01;
   std::optional<ImuBias> rest_;  // what the IMU gives at rest, if it began so
   bool speed_was_known_ = false;
+  bool stood_ = false;           // until the last fix
   int rest_scans_ = 0;           // that it is the mean of
 };
 

@@ -15,7 +15,8 @@ void InertialConfig::fields(Fields& f) {
   f("max_turn_radps", max_turn_radps, positive());
   f("unknown_accel_mps2", unknown_accel_mps2, positive());
   f("unknown_turn_radps2", unknown_turn_radps2, positive());
-  f("imu_noise_factor", imu_noise_factor, positive());
+  f.automatic("imu_noise_factor", imu_noise_factor, positive());
+  f("gyro_scale_sigma", gyro_scale_sigma, non_negative());
   f("accel_bias_sigma_mps2", accel_bias_sigma_mps2, positive());
   f("wheel_slip", wheel_slip, positive());
   f("wheel_turn_slip", wheel_turn_slip, positive());

@@ -65,9 +65,10 @@ struct InertialConfig {
   double max_turn_radps = 3.0;             ///< as fast as anything on the ground turns
   /// How a robot's velocity changes that nothing measures: a car brakes by 3 m/s^2, the Scout by 1.
   double unknown_accel_mps2 = 2.0, unknown_turn_radps2 = 2.0;
-  /// On the densities of the sheet, which hold for an IMU on a table: a robot shakes it (10 to 20 are usual for cameras
-  /// with IMUs in the hand).
-  double imu_noise_factor = 5.0;
+  /// On the densities of the sheet, which hold for an IMU on a table. Automatic: as noisy as its samples are, and no less
+  /// than the sheet says.
+  std::optional<double> imu_noise_factor;
+  double gyro_scale_sigma = 0.005;      ///< share of each turn: scale and axes off (MEMS, factory calibrated: 0.2-1 %)
   double accel_bias_sigma_mps2 = 0.05;  ///< when the IMU is turned on (MTi-300: 0.02-0.05)
   /// Wheels slip and skid: error of the way, and of the turn, as shares of them.
   double wheel_slip = 0.03, wheel_turn_slip = 0.2;
@@ -102,6 +103,10 @@ class MotionPrior {
   virtual void add_scan(Time /*stamp*/, const Cloud& /*points_lidar*/, const SE3& /*T_odom_base*/) {}
   /// Intervals between scans in which the wheels slid, and were not believed.
   virtual int64_t slips() const { return 0; }
+  /// The densities that the IMU is believed to have now, of a prior that uses one: gyro rad/s/rtHz, accelerometer m/s^2/rtHz.
+  virtual std::optional<Eigen::Vector2d> imu_noise() const { return std::nullopt; }
+  /// Whether the robot is known to have stood between the last two fixes.
+  virtual bool stood() const { return false; }
   /// Of a prior that sees.
   virtual std::optional<VisualReport> visual_report() const { return std::nullopt; }
 };

@@ -24,6 +24,8 @@ class VioPrior : public MotionPrior {
   void correct(const OdometryFix& fix) override;
   void add_scan(Time stamp, const Cloud& points_lidar, const SE3& T_odom_base) override;
   int64_t slips() const override { return fallback_.slips(); }
+  bool stood() const override { return fallback_.stood(); }
+  std::optional<Eigen::Vector2d> imu_noise() const override { return fallback_.imu_noise(); }
   std::optional<VisualReport> visual_report() const override;
 
  private:

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "core/rng.h"
+#include "scenarios/health/diagnosis.h"
 #include "scenarios/health/doctor.h"
 
 namespace vsslam {
@@ -143,7 +144,20 @@ TEST(Health, WheelsAreMeasuredAgainstTheSheet) {
   EXPECT_THAT(wide.warnings, ElementsAre(AllOf(HasSubstr("effective_track_m is 0.9"), HasSubstr("1.17"))));
   const Health small = Drive{.wheel_radius_m = 0.8 * 0.16459}.health();
   EXPECT_NEAR(*small.wheels.travel_scale, 1.25, 0.01);
-  EXPECT_THAT(small.warnings, Contains(HasSubstr("wheels.wheel_radius_m is 0.1646, 0.1317 would fit")));
+  EXPECT_THAT(small.warnings, ElementsAre(HasSubstr("wheels.wheel_radius_m is 0.1646, 0.1317 would fit")));
+}
+
+TEST(Health, StepsThatAreGuessesAreSaidAndMostOfThemMakeARunWorthless) {
+  Health health = Drive{}.health();
+  health.odometry.steps = 100;
+  health.odometry.steps_unsure = 3;
+  health.odometry.worst_step_sigma_m = 1.41;
+  diagnose({}, health);
+  EXPECT_THAT(health.warnings, ElementsAre(AllOf(HasSubstr("3 of its 100 steps"), HasSubstr("1.41 m"))));
+  EXPECT_EQ(health.worthless, "");
+  health.odometry.steps_unsure = 60;
+  diagnose({}, health);
+  EXPECT_THAT(health.worthless, HasSubstr("60 of 100 steps"));
 }
 
 TEST(Health, FrozenAndDarkImagesAreCounted) {

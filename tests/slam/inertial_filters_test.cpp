@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <numbers>
+#include <random>
 
 #include "slam/inertial/fix_history.h"
+#include "slam/inertial/imu_noise.h"
 #include "slam/inertial/imu_prior.h"
 #include "slam/inertial/pose_covariance.h"
 #include "slam/inertial/prior_trust.h"
@@ -238,6 +240,60 @@ TEST(ImuPrior, GoesByGyroscopeAndWheelsWhereTheForceIsNone) {
   EXPECT_LT(error.translation.norm(), 0.01);
   EXPECT_LT(error.angle(), 5e-3);
   EXPECT_EQ(prior.slips(), 0);
+}
+
+// A robot that begins at rest where the LiDAR is blind along x: each registration leaves it where the prior had it, give or
+// take noise. Until the second scan it may as well have driven at a constant speed; then the IMU knows that it stood.
+TEST(ImuPrior, ABlindLidarDoesNotMoveARobotThatStands) {
+  RigCalibration calibration;
+  ImuPrior prior({}, calibration, false);
+  prior.start({.T_odom_base = SE3(), .at_rest = true});
+  const auto feed = [&](int64_t from, int64_t to) {
+    for (int64_t t = from; t < to; t += 10) prior.add(ImuSample{ms(t), Vec3::Zero(), {0, 0, calibration.imu.gravity_mps2}, {}});
+  };
+  feed(0, 100);
+  prior.correct({.stamp = ms(0), .T_odom_base = SE3(), .covariance = 1e-8 * Mat6::Identity()});
+  SE3 T_odom_base;
+  for (int scan = 1; scan <= 20; ++scan) {
+    feed(100 * scan, 100 * scan + 100);
+    const Mat6 predicted = prior.covariance(ms(100 * scan));
+    const double sigma_m = std::sqrt(predicted(3, 3));
+    if (scan == 1)
+      EXPECT_GT(sigma_m, 0.5);
+    else
+      EXPECT_LT(sigma_m, 0.01) << scan;
+    Mat6 known = 1e-8 * Mat6::Identity();
+    known(3, 3) = 0.9 * predicted(3, 3);
+    T_odom_base.translation.x() += scan % 2 ? 0.002 * sigma_m : -0.002 * sigma_m;
+    prior.correct({.stamp = ms(100 * scan), .T_odom_base = T_odom_base, .covariance = known});
+    EXPECT_TRUE(prior.stood());
+  }
+  EXPECT_LT(std::abs(T_odom_base.translation.x()), 0.005);
+}
+
+// White noise of four times the sheet's density, on top of a turn that speeds up; and one of a tenth of it.
+TEST(ImuNoise, IsMeasuredInTheSamplesAndNotBelievedBelowTheSheet) {
+  const ImuCalibration sheet;
+  for (const double factor : {4.0, 0.1}) {
+    std::mt19937 random(7);
+    std::normal_distribution<double> normal;
+    const double root_rate = std::sqrt(100.0);
+    std::deque<ImuSample> samples;
+    ImuNoise noise(sheet, std::nullopt);
+    const auto scatter = [&](double density) {
+      return Vec3(factor * density * root_rate * Vec3(normal(random), normal(random), normal(random)));
+    };
+    for (int64_t t = 0; t <= 10000; t += 10) {
+      const double s = 1e-3 * static_cast<double>(t);
+      samples.push_back({ms(t), Vec3(0, 0, 0.1 * s) + scatter(sheet.gyro_noise_radps_rthz),
+                         Vec3(0, 0, 9.8) + scatter(sheet.accel_noise_mps2_rthz), std::nullopt});
+      if (t % 100 == 0 && t > 0) noise.listen(samples, ms(t - 100), ms(t));
+    }
+    const double expected = std::max(1.0, factor);
+    EXPECT_NEAR(noise.gyro_radps_rthz() / sheet.gyro_noise_radps_rthz, expected, 0.1 * expected);
+    EXPECT_NEAR(noise.accel_mps2_rthz() / sheet.accel_noise_mps2_rthz, expected, 0.1 * expected);
+  }
+  EXPECT_EQ(ImuNoise(sheet, 5.0).gyro_radps_rthz(), 5 * sheet.gyro_noise_radps_rthz);
 }
 
 TEST(PriorTrust, RefusesWhatIsFarOffAndTakesItBackWhenItIsRight) {

@@ -17,7 +17,7 @@ TEST(StepCovariance, ComesFromThePriorsWhereScansAreBlindAndElseFromBothScans) {
   Vec6 prior = Vec6::Constant(0.01);
   prior[3] = 4e-6;
   for (int scan = 0; scan < 10; ++scan) {
-    step.add_prediction(SE3(), prior.asDiagonal(), 0.1, 0);
+    step.add_prediction(SE3(), prior.asDiagonal(), 0.1, 0, false);
   }
   const Mat6 covariance = step.add_key(T_step, known.asDiagonal());
   EXPECT_NEAR(covariance(3, 3), 100 * 4e-6, 2e-6);
@@ -31,7 +31,7 @@ TEST(StepCovariance, CountsByWhatScansWereBent) {
   const Mat6 known = 1e-8 * Mat6::Identity(), claimed = known + 4e-6 * Mat6::Identity();
   const Vec6 off = Vec6::Constant(std::sqrt(claimed(0, 0)) / 2);
   const auto scan = [&] {
-    step.add_prediction(SE3(), claimed - known, 0.1, 0.1);
+    step.add_prediction(SE3(), claimed - known, 0.1, 0.1, false);
     step.add_registration(off, claimed, known);
   };
   for (int i = 0; i < 200; ++i) scan();
@@ -39,6 +39,21 @@ TEST(StepCovariance, CountsByWhatScansWereBent) {
   for (int i = 0; i < 200; ++i) scan();
   const Mat6 covariance = step.add_key(SE3(), known);
   for (int k = 0; k < 6; ++k) EXPECT_NEAR(covariance(k, k), 2 * (1e-6 / 3 + 1e-8), 2e-8) << k;
+}
+
+// An IMU of known noise errs as it claims even where the scans happen to agree with it, and its turns err anew each scan;
+// its velocity's error lasts.
+TEST(StepCovariance, BelievesTheNoiseOfAnImuThatWasMeasured) {
+  StepCovariance step;
+  const Mat6 known = Mat6::Identity(), prior = 1e-6 * Mat6::Identity();
+  step.add_key(SE3(), known);
+  for (int i = 0; i < 10; ++i) {
+    step.add_prediction(SE3(), prior, 0.1, 0, true);
+    step.add_registration(Vec6::Zero(), prior + 1e-9 * Mat6::Identity(), 1e-9 * Mat6::Identity());
+  }
+  const Mat6 covariance = step.add_key(SE3(), known);
+  EXPECT_NEAR(covariance(0, 0), 10e-6, 1e-9);
+  EXPECT_NEAR(covariance(3, 3), 100e-6, 2e-8);
 }
 
 }  // namespace
