@@ -301,7 +301,8 @@ class Loader final : public Fields {
   }
   [[noreturn]] void fail(const YAML::Node& n, const std::string& message) {
     const YAML::Mark mark = n.Mark();
-    if (mark.is_null()) throw InputError(fmt::format("{}: {}", file_, message));
+    const bool one_line = file_.starts_with("--set ");
+    if (mark.is_null() || one_line) throw InputError(fmt::format("{}: {}", file_, message));
     throw InputError(fmt::format("{}:{}:{}: {}", file_, mark.line + 1, mark.column + 1, message));
   }
 

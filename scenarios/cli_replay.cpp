@@ -79,8 +79,8 @@ void add_replay_command(CLI::App& app, Console& console, Command& command) {
                   "the robot's sheet: a name (see list) or a path (default: rig.yaml beside the recording)");
   sub->add_option("--method", arguments->methods, "names with commas between, or all (default: vs-slam)");
   sub->add_option("--truth", arguments->truth, "a trajectory (TUM, KITTI) or a topic to score against");
-  repeated("--topic", arguments->topics, "SENSOR=TOPIC for lidar, imu, camera, wheels; SENSOR=none: unused");
-  repeated("--set", arguments->settings, "key=value; changes a setting of the stack (slam....)");
+  repeated("--topic", arguments->topics, "SENSOR=TOPIC for lidar, imu, camera, wheels, truth; SENSOR=none: unused");
+  repeated("--set", arguments->settings, "key=value; changes slam. ... or map_voxel_m; the sensors stand in the sheet");
   sub->add_flag("--salvage", arguments->salvage, "of a broken file, read what is before the break");
   sub->add_flag("--undistorted", arguments->undistorted, "the scans have been undistorted already");
   sub->add_option("--name", arguments->name, "of the result (default: the recording's)");

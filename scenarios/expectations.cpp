@@ -55,6 +55,8 @@ const std::vector<std::string>& metric_names() {
                                                  "restarts",
                                                  "coverage",
                                                  "health.scans_prior_only",
+                                                 "health.scans_blind",
+                                                 "health.steps_unsure",
                                                  "health.scans_unconverged",
                                                  "health.lost_spans",
                                                  "health.warnings"};

@@ -26,14 +26,15 @@ Row header() {
 
 Row row(const FinishedRun& run) {
   const Metrics& m = run.metrics;
+  const bool closes_loops = m.truth != Truth::none && m.method != method_name(Method::lvi_sam_no_loop);
   return {m.method, m.seed ? fmt::format("{}", *m.seed) : "-", number(m.duration_s, 1),
           m.truth == Truth::none ? "-" : number(m.path_length_m, 1),
           // An error of what no LiDAR has seen must not look like one of this method.
           number(m.ate_rmse_m, 3) + (m.ate_rmse_m && m.health.blind() ? " !" : ""), number(m.ate_max_m, 3),
           number(m.rpe_10m_percent, 2), number(m.rpe_10m_deg, 2), number(m.end_error_m, 3),
           number(m.odometry_ate_rmse_m, 3), number(m.map_error_mean_m, 3),
-          m.truth == Truth::none ? "-" : fmt::format("{}", m.loops.true_loops),
-          m.truth == Truth::none ? "-" : fmt::format("{}", m.loops.false_loops), number(m.loops.recall, 2),
+          closes_loops ? fmt::format("{}", m.loops.true_loops) : "-",
+          closes_loops ? fmt::format("{}", m.loops.false_loops) : "-", closes_loops ? number(m.loops.recall, 2) : "-",
           fmt::format("{}", m.descriptors.count), number(run.real_time_factor, 1), m.health.verdict()};
 }
 

@@ -103,7 +103,7 @@ RecordingIndex BagRecording::index() {
   const auto index_at = file_header.fields.number<uint64_t>("index_pos");
   if (index_at == 0) throw InputError("has no index: its recording was not finished");
   if (index_at > file_.size())
-    throw InputError(fmt::format("ends at byte {}, before its index at {}", file_.size(), index_at));
+    throw InputError(fmt::format("ends at byte {}, before its index at {} (--salvage reads what is before the break)", file_.size(), index_at));
   RecordingIndex index;
   const std::string bytes = file_.read(index_at, file_.size() - index_at);
   ByteCursor cursor(bytes);

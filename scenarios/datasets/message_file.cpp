@@ -193,7 +193,7 @@ std::unique_ptr<MessageReader> read_messages(const std::filesystem::path& path, 
     throw InputError(fmt::format(
         "{}: a bag of another format than 2.0 (rosbag fix, or rosbag migrate, converts it)", path.string()));
   else
-    throw InputError(fmt::format("{}: neither a ROS 1 bag nor an MCAP file", path.string()));
+    throw InputError(fmt::format("{}: neither a ROS 1 bag, nor an MCAP file, nor Velodyne packets (pcap, pcapng, or 1206 bytes each)", path.string()));
   return std::make_unique<ChunkedReader>(std::move(recording), options);
 }
 

@@ -93,8 +93,10 @@ std::string choose(const Role& role, const std::vector<RecordedTopic>& topics,
   if (role.in_sheet.empty()) return guess(role, topics, file, notes);
   if (has(candidates, role.in_sheet)) return role.in_sheet;
   if (role.sensor == "lidar") fail_unknown(role, role.in_sheet, candidates, topics, file);
-  notes.push_back(
-      fmt::format("{}: not recorded (no messages on the sheet's topic {})", role.sensor, role.in_sheet));
+  notes.push_back(fmt::format("{}: not recorded (no messages on the sheet's topic {}{})", role.sensor, role.in_sheet,
+                              candidates.empty() ? ""
+                                                 : fmt::format("; recorded: {}, take it with --topic {}={}",
+                                                               fmt::join(candidates, ", "), role.sensor, candidates.front())));
   return {};
 }
 

@@ -124,7 +124,7 @@ bool fit_plane(const Sums& sums, const Eigen::Vector3f& origin, double range_sig
 }  // namespace
 
 void PlaneMap::rebuild(const std::deque<std::vector<MapPoint>>& keys_odom, double range_sigma_m) {
-  constexpr double kTiltSigmas = 4;
+  constexpr double kTiltSigmas = 3;  // more would let the shortest chord, five times the noise, stand upright on a plane
   range_sigma_m_ = range_sigma_m;
   max_chord_tilt_m_ = static_cast<float>(
       config_.max_chord_tilt_m.value_or(kTiltSigmas * std::numbers::sqrt2 * range_sigma_m));

@@ -34,7 +34,7 @@ struct PlaneMapConfig {
   /// Uncertainty of the normal, from the spread and number of the points. What it feigns is taken away again
   /// (registration.h), so narrow faces may speak.
   double max_normal_sigma_rad = 0.1;
-  /// A point whose chord leaves the plane by more lies on another surface. Automatic: 4 times the noise of the
+  /// A point whose chord leaves the plane by more lies on another surface. Automatic: 3 times the noise of the
   /// difference of two ranges.
   std::optional<double> max_chord_tilt_m;
   void fields(Fields& f);

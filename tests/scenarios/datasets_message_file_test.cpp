@@ -288,8 +288,8 @@ TEST(MessageFile, IsKnownByItsContent) {
     }
     return "";
   };
-  EXPECT_THAT(refusal(""), HasSubstr("neither a ROS 1 bag nor an MCAP file"));
-  EXPECT_THAT(refusal("some text that is no recording"), HasSubstr("neither a ROS 1 bag nor an MCAP file"));
+  EXPECT_THAT(refusal(""), HasSubstr("neither a ROS 1 bag, nor an MCAP file"));
+  EXPECT_THAT(refusal("some text that is no recording"), HasSubstr("neither a ROS 1 bag, nor an MCAP file"));
   EXPECT_THAT(refusal("#ROSBAG V1.2\n"), HasSubstr("another format than 2.0"));
   EXPECT_THROW(read_messages(scratch_folder() / "not_there.bag"), InputError);
   EXPECT_THROW(read_messages(scratch_folder()), InputError);

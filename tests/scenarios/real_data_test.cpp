@@ -61,8 +61,9 @@ fs::path kitti_with_calibration(const fs::path& sequence) {
 }
 
 // Six scans of an HDL-64E, corrected for the car's motion. The published poses move 0.86 m a scan; the scans do not agree
-// with them: generalised ICP (PCL 1.13, voxels of 0.3 m), begun at the published motion of each pair, moves by 0.69, 0.70,
-// 0.75, 0.76 and 0.76 m. So the reference here is what two methods that know nothing of each other find in the scans.
+// with them. Searched by brute force (x, y and yaw of each pair, mean squared distance to the nearest point above the ground,
+// cut off at 0.15 m), they move by 0.683, 0.696, 0.717, 0.732 and 0.746 m, with a mean that is 0.4 to 0.6 of that at the
+// published motion; generalised ICP (PCL 1.13), begun at the published motion, agrees within 4 cm a pair.
 TEST_F(RealData, KittisCarIsWhereItDroveFromTheFirstScanOn) {
   const fs::path sequence = recording("kitti_00");
   for (const char* file : {"times.txt", "poses.txt", "velodyne/000005.bin"})
@@ -70,9 +71,9 @@ TEST_F(RealData, KittisCarIsWhereItDroveFromTheFirstScanOn) {
   const nlohmann::json metrics = replay(kitti_with_calibration(sequence), {"--undistorted"});
   ASSERT_TRUE(metrics.contains("end_error_m"));
   EXPECT_EQ(metrics["scans"], 6);
-  constexpr double kIcp_m = 3.66, kPublished_m = 4.30;
+  constexpr double kFound_m = 3.574, kPublished_m = 4.30;
   EXPECT_NEAR(metrics["path_length_m"], kPublished_m, 0.01);
-  EXPECT_NEAR(metrics["end_error_m"], kPublished_m - kIcp_m, 0.15);
+  EXPECT_NEAR(metrics["end_error_m"], kPublished_m - kFound_m, 0.1);
 }
 
 // Key scans of an Ouster OS1-64, 1 to 2 m and 0.2 to 8 s apart, without rings and times.

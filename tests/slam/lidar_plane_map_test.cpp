@@ -45,5 +45,15 @@ TEST(PlaneMap, AWallAndTheDoorsInItAreDifferentPlanesAtAnyNoise) {
   }
 }
 
+// The shortest chord of a feature is five times the noise.
+TEST(PlaneMap, AChordAtRightAnglesIsAnotherSurface) {
+  for (const double sigma_m : {0.007, 0.05}) {
+    const PlaneMap map = map_of_a_wall_with_doors(sigma_m);
+    const auto shortest_m = static_cast<float>(5 * sigma_m);
+    EXPECT_NE(map.find({6, 3, 1}, {shortest_m, 0, 0}), nullptr) << sigma_m;
+    EXPECT_EQ(map.find({6, 3, 1}, {0, shortest_m, 0}), nullptr) << sigma_m;
+  }
+}
+
 }  // namespace
 }  // namespace vsslam

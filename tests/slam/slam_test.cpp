@@ -66,6 +66,15 @@ TEST(Slam, CorrectsTheWheelsWhereJambsAreSeen) {
   EXPECT_LT(driven.position_rmse_m, 0.002 * driven.path_m);
 }
 
+TEST(Slam, APriorWithoutItsSensorsIsSaid) {
+  SlamConfig config;
+  config.prior = PriorKind::vio;
+  Odometry odometry(config, {});
+  odometry.add(ImuSample{Time{1}, Vec3::Zero(), {0, 0, 9.8}, std::nullopt});
+  ASSERT_EQ(odometry.health().warnings.size(), 1u);
+  EXPECT_NE(odometry.health().warnings[0].find("a camera, and there is none"), std::string::npos);
+}
+
 class SlamWithPrior : public ::testing::TestWithParam<PriorKind> {};
 TEST_P(SlamWithPrior, HoldsItsPlaceInARoom) {
   DriveOptions options;
