@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/cli.h"
+#include "scenarios/cli/cli.h"
 
 int main(int argc, char** argv) {
   // Large blocks go back to the system when they are freed; glibc would come to keep ever larger ones. What the small

@@ -7,8 +7,8 @@
 
 #include "core/config.h"
 #include "core/rng.h"
-#include "sensors/noise.h"
-#include "sensors/samples.h"
+#include "sensors/measurement/noise.h"
+#include "sensors/measurement/samples.h"
 #include "sim/trajectory.h"
 
 namespace vsslam {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "sensors/renderer.h"
-#include "sensors/sensor_events.h"
+#include "sensors/measurement/sensor_events.h"
+#include "sensors/render/renderer.h"
 
 namespace vsslam {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/time.h"
-#include "sensors/sensor_events.h"
+#include "sensors/measurement/sensor_events.h"
 #include "worlds/world.h"
 
 namespace vsslam {

@@ -5,8 +5,8 @@
 #include <optional>
 #include <utility>
 
-#include "sensors/faults.h"
-#include "sensors/lidar.h"
+#include "sensors/lidar/lidar.h"
+#include "sensors/measurement/faults.h"
 #include "sensors/moving_objects.h"
 #include "sensors/rig_camera.h"
 

@@ -6,10 +6,10 @@
 #include <optional>
 #include <utility>
 
-#include "sensors/camera.h"
+#include "sensors/camera/camera.h"
 #include "sensors/light_switches.h"
 #include "sensors/moving_objects.h"
-#include "sensors/renderer.h"
+#include "sensors/render/renderer.h"
 
 namespace vsslam {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "core/config.h"
-#include "sensors/samples.h"
+#include "sensors/measurement/samples.h"
 #include "sim/wheel_state.h"
 
 namespace vsslam {

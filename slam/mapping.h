@@ -7,8 +7,8 @@
 
 #include "core/calibration.h"
 #include "core/stage_clock.h"
-#include "slam/key_scan.h"
 #include "slam/loop/loop_closer.h"
+#include "slam/map/key_scan.h"
 #include "slam/odometry.h"
 
 namespace vsslam {

@@ -17,10 +17,10 @@
 #include "slam/inertial/rest_alignment.h"
 #include "slam/lidar/ring_bands.h"
 #include "slam/lidar/surface_features.h"
-#include "slam/lidar/undistort.h"
 #include "slam/map/map_cloud.h"
 #include "slam/step_covariance.h"
-#include "slam/vision/vio_prior.h"
+#include "slam/undistort.h"
+#include "slam/vio_prior.h"
 
 namespace vsslam {
 

@@ -6,7 +6,7 @@
 #include "slam/inertial/motion_prior.h"
 #include "slam/lidar/lidar_odometry.h"
 #include "slam/loop/loop_config.h"
-#include "slam/vision/vision_config.h"
+#include "slam/vision_config.h"
 
 namespace vsslam {
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <span>
 
-#include "sensors/samples.h"
+#include "sensors/measurement/samples.h"
 #include "slam/lidar/information.h"
 
 namespace vsslam {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "core/se3.h"
-#include "sensors/raycaster.h"
-#include "sensors/samples.h"
+#include "sensors/measurement/samples.h"
+#include "sensors/ray/raycaster.h"
 #include "slam/lidar/cloud.h"
 #include "slam/loop/loop_closer.h"
 

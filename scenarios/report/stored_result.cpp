@@ -7,7 +7,7 @@
 #include "core/errors.h"
 #include "core/files.h"
 #include "scenarios/report/ply_points.h"
-#include "scenarios/results_columns.h"
+#include "scenarios/results/results_columns.h"
 
 namespace vsslam {
 

@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "core/errors.h"
-#include "scenarios/library_files.h"
+#include "scenarios/experiment/library_files.h"
 #include "slam/loop/loop_config.h"
 
 namespace vsslam {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/config.h"
-#include "scenarios/expectations.h"
+#include "scenarios/experiment/expectations.h"
 
 namespace vsslam {
 

@@ -7,8 +7,8 @@
 
 #include "core/errors.h"
 #include "core/files.h"
-#include "scenarios/fingerprint.h"
-#include "scenarios/simulated_drive.h"
+#include "scenarios/experiment/fingerprint.h"
+#include "scenarios/run/simulated_drive.h"
 
 namespace vsslam {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/scenario.h"
+#include "scenarios/experiment/scenario.h"
 #include "scenarios/suite/suite.h"
 
 namespace vsslam {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/progress.h"
-#include "scenarios/simulated_drive.h"
+#include "scenarios/run/progress.h"
+#include "scenarios/run/simulated_drive.h"
 #include "scenarios/suite/suite_plan.h"
 
 namespace vsslam {

@@ -111,7 +111,7 @@ class MotionPrior {
   virtual std::optional<VisualReport> visual_report() const { return std::nullopt; }
 };
 
-/// Not for `vio`, see slam/vision/vio_prior.h.
+/// Not for `vio`, see slam/vio_prior.h.
 std::unique_ptr<MotionPrior> make_motion_prior(PriorKind kind, const InertialConfig& config,
                                                const RigCalibration& rig);
 

@@ -5,8 +5,8 @@
 #include <memory>
 #include <vector>
 
-#include "slam/key_scan.h"
 #include "slam/loop/icp.h"
+#include "slam/map/key_scan.h"
 
 namespace vsslam {
 

@@ -12,10 +12,10 @@
 #include "core/config.h"
 #include "core/stage_clock.h"
 #include "slam/graph/pose_graph.h"
-#include "slam/key_scan.h"
 #include "slam/lidar/degeneracy.h"
 #include "slam/loop/loop_config.h"
 #include "slam/loop/memory_decision.h"
+#include "slam/map/key_scan.h"
 
 namespace vsslam {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "slam/key_scan.h"
+#include "slam/map/key_scan.h"
 
 namespace vsslam {
 

@@ -9,10 +9,10 @@
 #include <memory>
 
 #include "core/ordered_parallel.h"
-#include "scenarios/png_file.h"
-#include "sensors/camera.h"
+#include "scenarios/datasets/formats/png_file.h"
+#include "sensors/camera/camera.h"
 #include "tests/sensors/shapes.h"
-#include "worlds/corridor.h"
+#include "worlds/indoor/corridor.h"
 
 namespace vsslam {
 namespace {

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "core/rng.h"
-#include "scenarios/datasets/message_file.h"
+#include "scenarios/datasets/formats/message_file.h"
 
 namespace vsslam {
 namespace {

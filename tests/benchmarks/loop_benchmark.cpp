@@ -4,8 +4,8 @@
 #include "slam/loop/descriptor_database.h"
 #include "slam/loop/icp.h"
 #include "slam/loop/local_map.h"
-#include "tests/slam/graph_worlds.h"
-#include "tests/slam/loop_room.h"
+#include "tests/slam/graph/graph_worlds.h"
+#include "tests/slam/loop/loop_room.h"
 
 namespace vsslam {
 namespace {

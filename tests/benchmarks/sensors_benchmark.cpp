@@ -13,12 +13,12 @@
 
 #include "core/ordered_parallel.h"
 #include "core/rng.h"
-#include "sensors/beam.h"
 #include "sensors/imu.h"
-#include "sensors/lidar.h"
-#include "sensors/renderer.h"
+#include "sensors/lidar/lidar.h"
+#include "sensors/render/beam.h"
+#include "sensors/render/renderer.h"
 #include "tests/sensors/shapes.h"
-#include "worlds/corridor.h"
+#include "worlds/indoor/corridor.h"
 
 namespace vsslam {
 namespace {

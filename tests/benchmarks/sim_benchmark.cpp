@@ -2,7 +2,7 @@
 #include <benchmark/benchmark.h>
 
 #include "sim/simulation.h"
-#include "worlds/world_source.h"
+#include "worlds/factory/world_source.h"
 
 namespace vsslam {
 namespace {

@@ -3,7 +3,7 @@
 #include <benchmark/benchmark.h>
 
 #include "slam/lidar/lidar_odometry.h"
-#include "slam/lidar/undistort.h"
+#include "slam/undistort.h"
 #include "tests/slam/analytic_scene.h"
 
 namespace vsslam {

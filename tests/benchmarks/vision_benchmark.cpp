@@ -3,11 +3,11 @@
 
 #include <opencv2/core/utility.hpp>
 
+#include "slam/depth/lidar_depth.h"
 #include "slam/vision/epipolar.h"
 #include "slam/vision/feature_tracker.h"
-#include "slam/vision/lidar_depth.h"
 #include "tests/slam/analytic_scene.h"
-#include "tests/slam/visual_scene.h"
+#include "tests/slam/vision/visual_scene.h"
 
 namespace vsslam {
 namespace {

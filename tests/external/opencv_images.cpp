@@ -7,7 +7,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "core/errors.h"
-#include "scenarios/datasets/message_file.h"
+#include "scenarios/datasets/formats/message_file.h"
 
 namespace {
 

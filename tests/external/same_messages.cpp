@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 
 #include "core/errors.h"
-#include "tests/scenarios/dataset_messages.h"
+#include "tests/scenarios/datasets/dataset_messages.h"
 
 int main(int argc, char** argv) try {
   using namespace vsslam;

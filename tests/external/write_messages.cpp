@@ -1,7 +1,7 @@
 // Writes one message of every type into a bag and an MCAP file, for readers of others.
 #include <fmt/format.h>
 
-#include "tests/scenarios/dataset_messages.h"
+#include "tests/scenarios/datasets/dataset_messages.h"
 
 int main(int argc, char** argv) {
   using namespace vsslam;

@@ -7,8 +7,8 @@
 #include "core/files.h"
 #include "core/ordered_parallel.h"
 #include "scenarios/evaluation/csv.h"
-#include "scenarios/runner.h"
-#include "scenarios/wall_clock.h"
+#include "scenarios/run/runner.h"
+#include "scenarios/stages/wall_clock.h"
 #include "tests/scratch.h"
 
 namespace vsslam {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/cli.h"
+#include "scenarios/cli/cli.h"
 
 namespace vsslam {
 

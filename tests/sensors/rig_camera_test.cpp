@@ -13,7 +13,7 @@
 #include "core/errors.h"
 #include "core/ordered_parallel.h"
 #include "sensors/rig.h"
-#include "tests/sensors/views.h"
+#include "tests/sensors/camera/views.h"
 
 namespace vsslam {
 namespace {

@@ -5,7 +5,7 @@
 #include <functional>
 #include <string>
 
-#include "sensors/samples.h"
+#include "sensors/measurement/samples.h"
 #include "sim/trajectory.h"
 #include "worlds/world.h"
 

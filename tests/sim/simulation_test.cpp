@@ -8,7 +8,7 @@
 #include "core/errors.h"
 #include "sim/path.h"
 #include "tests/sim/small_worlds.h"
-#include "worlds/world_source.h"
+#include "worlds/factory/world_source.h"
 
 namespace vsslam {
 namespace {

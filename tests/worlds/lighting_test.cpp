@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "worlds/corridor.h"
-#include "worlds/room.h"
+#include "worlds/indoor/corridor.h"
+#include "worlds/indoor/room.h"
 
 namespace vsslam {
 namespace {

@@ -9,10 +9,10 @@
 #include "core/files.h"
 #include "tests/scratch.h"
 #include "worlds/describe.h"
-#include "worlds/gltf.h"
-#include "worlds/likeness.h"
+#include "worlds/factory/world_source.h"
+#include "worlds/gltf/gltf.h"
+#include "worlds/kit/likeness.h"
 #include "worlds/route.h"
-#include "worlds/world_source.h"
 
 namespace vsslam {
 namespace {
