@@ -163,7 +163,7 @@ OdometryScan Odometry::Impl::add(const LidarScan& scan) {
   // 6 far enough from the last key scan? then it enters the local map
   if (lidar.wants_key(T_odom_base)) {
     result.covariance_since_key = step.add_key(T_odom_base, own_covariance(registration, seen));
-    if (lidar.has_map()) note_step(result.covariance_since_key);
+    if (lidar.has_map()) note_step(step.unseen());
     make_key(seen, result);
   } else if (!lidar.has_map()) {  // the scans so far held no planes: this one may
     lidar.insert_key(features("features_of_key", seen.points_lidar, seen.order, lidar.map_voxel_m()),
@@ -184,7 +184,7 @@ Mat6 Odometry::Impl::known_step(const Prediction& prediction, const SE3& T_last_
   return step;
 }
 
-// A step from key scan to key scan.
+// A step from key scan to key scan, by how far it was seen.
 void Odometry::Impl::note_step(const Mat6& covariance) {
   constexpr double kUnsure_m = 0.1;  // of a step of about a meter: worse than any odometry that is of use
   const Eigen::SelfAdjointEigenSolver<Mat3> translation(covariance.bottomRightCorner<3, 3>(), Eigen::EigenvaluesOnly);

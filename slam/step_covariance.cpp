@@ -9,11 +9,23 @@
 
 namespace vsslam {
 
+namespace {
+
+// Of what two sources tell that err by themselves.
+Mat6 together(const Mat6& a, const Mat6& b) {
+  const Mat6 information = a.ldlt().solve(Mat6::Identity()) + b.ldlt().solve(Mat6::Identity());
+  return information.ldlt().solve(Mat6::Identity());
+}
+
+}  // namespace
+
 void StepCovariance::add_prediction(const SE3& T_last_predicted, const Mat6& step, double dt_s, double scan_s,
                                     bool measured) {
   missed_ = moved_covariance(missed_, T_last_predicted) + step;
   ++steps_;
-  meanwhile_ = scan_s / dt_s * step;
+  // Of a step that is longer than the scan: the error of a velocity grows with time, white noise with its root.
+  const double share = scan_s / dt_s;
+  meanwhile_ = (measured ? share : share * share) * step;
   measured_ = measured;
 }
 
@@ -40,16 +52,16 @@ Mat6 StepCovariance::bend() const {
 
 Mat6 StepCovariance::add_key(const SE3& T_odom_base, const Mat6& known_by_scan) {
   const Mat6 known = known_by_scan + bend();
-  const std::optional<Key> last = std::exchange(last_key_, Key{T_odom_base, known});
+  const std::optional<Key> last = std::exchange(last_key_, Key{T_odom_base, known, known_by_scan});
   // The error of a velocity lasts: n steps that err alike have n times the variance of n that err by themselves.
   const double n = std::exchange(steps_, 0);
   Vec6 alike;
   alike << Vec3::Constant(measured_ ? 1 : std::sqrt(n)), Vec3::Constant(std::sqrt(n));
   const Mat6 missed = alike.asDiagonal() * std::exchange(missed_, Mat6::Zero()) * alike.asDiagonal();
   if (!last) return known;
-  const Mat6 scans = moved_covariance(last->known, last->T_odom_base.inverse() * T_odom_base) + known;
-  const Mat6 by_priors = missed.ldlt().solve(Mat6::Identity()), by_scans = scans.ldlt().solve(Mat6::Identity());
-  return (by_priors + by_scans).ldlt().solve(Mat6::Identity());
+  const SE3 T_last_now = last->T_odom_base.inverse() * T_odom_base;
+  unseen_ = together(missed, moved_covariance(last->by_scan, T_last_now) + known_by_scan);
+  return together(missed, moved_covariance(last->known, T_last_now) + known);
 }
 
 }  // namespace vsslam

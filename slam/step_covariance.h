@@ -21,11 +21,13 @@ class StepCovariance {
   /// A key scan, whose registration errs by `known` beside others against the same map. The covariance of its pose in the
   /// frame of the key scan before; of the first one: `known`.
   Mat6 add_key(const SE3& T_odom_base, const Mat6& known);
+  /// The same of the last step, but for what its scans were bent by: large where neither priors nor scans saw how far it was.
+  const Mat6& unseen() const { return unseen_; }
 
  private:
   struct Key {
     SE3 T_odom_base;
-    Mat6 known;
+    Mat6 known, by_scan;  // with and without what the scan was bent by
   };
   Mat6 bend() const;
   std::optional<Key> last_key_;
@@ -33,6 +35,7 @@ class StepCovariance {
   Mat6 meanwhile_ = Mat6::Zero();  // by the prior while the last scan was taken, as it claims
   double steps_ = 0;
   bool measured_ = false;  // the last prediction
+  Mat6 unseen_ = Mat6::Zero();
   double surprise_[2] = {1, 1};  // of rotation and translation, running means: 1 where the priors err as they claim
 };
 

@@ -41,6 +41,17 @@ TEST(StepCovariance, CountsByWhatScansWereBent) {
   for (int k = 0; k < 6; ++k) EXPECT_NEAR(covariance(k, k), 2 * (1e-6 / 3 + 1e-8), 2e-8) << k;
 }
 
+// Scans of a tenth of a second, a second apart: by a velocity that is unsure by 1 m/s they are bent by 10 cm.
+TEST(StepCovariance, AVelocityBendsAScanByItsOwnTimeOnly) {
+  StepCovariance step;
+  const Mat6 known = 1e-8 * Mat6::Identity();
+  step.add_key(SE3(), known);
+  step.add_prediction(SE3(), Mat6::Identity(), 1, 0.1, false);
+  const Mat6 covariance = step.add_key(SE3(), known);
+  EXPECT_NEAR(std::sqrt(covariance(3, 3)), 0.1 / std::sqrt(3), 1e-3);
+  EXPECT_NEAR(step.unseen()(3, 3), 2e-8, 1e-10);  // both scans saw how far it was
+}
+
 // An IMU of known noise errs as it claims even where the scans happen to agree with it, and its turns err anew each scan;
 // its velocity's error lasts.
 TEST(StepCovariance, BelievesTheNoiseOfAnImuThatWasMeasured) {
